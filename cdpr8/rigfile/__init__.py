@@ -1,0 +1,17 @@
+"""Rig files: one file describes one machine (design, section 2)."""
+
+from cdpr8.rigfile.load import find_rig_file, load_rig, packaged_rig_path, parse_rig
+from cdpr8.rigfile.schema import Cable, Camera, Excitation, Intrinsics, Plate, Rig
+
+__all__ = [
+    "Cable",
+    "Camera",
+    "Excitation",
+    "Intrinsics",
+    "Plate",
+    "Rig",
+    "find_rig_file",
+    "load_rig",
+    "packaged_rig_path",
+    "parse_rig",
+]

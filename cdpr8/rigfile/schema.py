@@ -1,0 +1,262 @@
+"""The rig file as data: one class a section (design, section 2). Loading is in `load`."""
+
+from enum import StrEnum
+from typing import Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from cdpr8 import CABLES
+from cdpr8.rigfile.parameter import (
+    Damping,
+    Inertia,
+    LineDensity,
+    Mass,
+    Point,
+    Position,
+    Pretension,
+    Stiffness,
+)
+
+Vector = tuple[float, float, float]
+
+
+class Section(BaseModel):
+    """A table of the rig file: unknown keys are refused, values cannot be changed."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Platform(Section):
+    """The rigid platform; points of the platform frame are relative to its origin."""
+
+    mass_kg: Mass
+    inertia_kg_m2: Inertia = Field(description="about the centre of mass, in the platform frame")
+    centre_of_mass_m: Position = Point(value=(0.0, 0.0, 0.0), sigma=1e-3, unit="m")
+
+
+class Amplifier(Section):
+    """The force cell of one cable and the transducer electronics that read it."""
+
+    address: int = Field(ge=0, le=31)
+    serial_number: str = Field(default="", max_length=7)
+    nominal_force_n: float = Field(default=50.0, gt=0.0)
+    sensitivity_mv_per_v: float = Field(default=1.0, gt=0.0, description="from the certificate")
+    sign: Literal[1, -1] = 1
+    noise_n: float = Field(default=0.005, ge=0.0, description="standard deviation at rest")
+
+
+class CellPlace(StrEnum):
+    """Where a cable's force cell sits; friction between cell and platform is not seen by it."""
+
+    PLATFORM = "platform"
+    BASE = "base"
+    WINCH = "winch"
+
+
+class Cable(Section):
+    """One cable, from its base point (contact with the pulley) to its anchor on the platform."""
+
+    name: str = ""
+    base_m: Position = Field(description="in O-XYZ")
+    anchor_m: Position = Field(description="in the platform frame")
+    stiffness_n_per_m: Stiffness
+    pretension_n: Pretension
+    line_density_kg_per_m: LineDensity
+    damping_1_per_s: Damping
+    cell: CellPlace = CellPlace.PLATFORM
+    amplifier: Amplifier | None = None
+
+
+class Bus(Section):
+    """The serial line the amplifiers share; `port = "simulated"` is the built-in rig."""
+
+    port: str = "simulated"
+    baud: Literal[1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200] = 115200
+    parity: Literal["even", "none"] = "even"
+    output_format: int = Field(default=24, ge=0, le=255, description="COF of the AED protocol")
+    output_rate: int = Field(default=0, ge=0, le=7, description="ICR of the AED protocol")
+    filter: int = Field(default=0, ge=0, le=10, description="ASF of the AED protocol")
+
+
+class Intrinsics(Section):
+    """A pinhole camera in OpenCV's convention, for the full sensor image."""
+
+    width_px: int = Field(gt=0)
+    height_px: int = Field(gt=0)
+    fx_px: float = Field(gt=0.0)
+    fy_px: float = Field(gt=0.0)
+    cx_px: float
+    cy_px: float
+    distortion: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0)
+
+    @model_validator(mode="after")
+    def _five_distortion_coefficients(self) -> Self:
+        if len(self.distortion) not in (4, 5, 8, 12, 14):
+            raise ValueError("distortion takes 4, 5, 8, 12 or 14 coefficients (OpenCV's order)")
+        return self
+
+
+class CameraPose(Section):
+    """Where the camera stands in O-XYZ; `up` points to the top of its image."""
+
+    position_m: Vector
+    look_at_m: Vector = (0.0, 0.0, 0.0)
+    up: Vector = (0.0, 0.0, 1.0)
+
+
+class RegionOfInterest(Section):
+    """The part of the sensor image that is recorded."""
+
+    x_px: int = Field(ge=0)
+    y_px: int = Field(ge=0)
+    width_px: int = Field(gt=0)
+    height_px: int = Field(gt=0)
+
+
+class Camera(Section):
+    """The camera; `source = "simulated"` renders the plate, else a device number or a path."""
+
+    source: str = "simulated"
+    fps: float = Field(default=16.0, gt=0.0)
+    exposure_s: float = Field(default=0.005, gt=0.0)
+    intrinsics: Intrinsics | str = Field(description="a table, or a file beside the rig file")
+    pose: CameraPose | None = Field(
+        default=None, description="left out: taken from the frames at rest"
+    )
+    region_of_interest: RegionOfInterest | None = None
+
+
+class PlatePose(Section):
+    """How the plate sits on the platform, in the platform frame."""
+
+    position_m: Vector = Field(description="of the plate's origin")
+    normal: Vector = Field(description="points out of the printed side")
+    up: Vector = Field(description="points to the top of the print")
+
+
+class Marker(Section):
+    """One square marker; the centre is in the plate's plane, x to the right, y up."""
+
+    id: int = Field(ge=0)
+    centre_m: tuple[float, float]
+    size_m: float = Field(gt=0.0)
+
+
+class Grid(Section):
+    """Markers in rows and columns about the plate's origin, ids from top left, row by row."""
+
+    columns: int = Field(gt=0)
+    rows: int = Field(gt=0)
+    size_m: float = Field(gt=0.0)
+    gap_m: float = Field(gt=0.0)
+    first_id: int = Field(default=0, ge=0)
+
+    def markers(self) -> tuple[Marker, ...]:
+        """The grid, marker by marker."""
+        pitch = self.size_m + self.gap_m
+        return tuple(
+            Marker(
+                id=self.first_id + row * self.columns + column,
+                centre_m=(
+                    (column - (self.columns - 1) / 2) * pitch,
+                    ((self.rows - 1) / 2 - row) * pitch,
+                ),
+                size_m=self.size_m,
+            )
+            for row in range(self.rows)
+            for column in range(self.columns)
+        )
+
+
+class Plate(Section):
+    """The marker plate on the platform."""
+
+    dictionary: str = "DICT_4X4_50"
+    margin_m: float = Field(default=0.01, gt=0.0, description="white border round the markers")
+    grid: Grid | None = None
+    marker: tuple[Marker, ...] = ()
+    pose: PlatePose
+
+    @model_validator(mode="after")
+    def _grid_or_markers(self) -> Self:
+        if (self.grid is None) == (not self.marker):
+            raise ValueError("a plate takes either [plate.grid] or [[plate.marker]], one of them")
+        ids = [marker.id for marker in self.markers()]
+        if len(set(ids)) != len(ids):
+            raise ValueError(f"marker ids repeat: {ids}; each id once")
+        return self
+
+    def markers(self) -> tuple[Marker, ...]:
+        """All markers, however they were given."""
+        return self.grid.markers() if self.grid else self.marker
+
+
+class Excitation(Section):
+    """The commanded motion X*(t), on the tension clock (design, section 4).
+
+    X* = 0 until `motion_start_s`; then `amplitude_deg` w(tau) sin(2 pi f tau) about one axis,
+    with w rising from 0 to 1 over `ramp_s` and falling over the last `ramp_s`; then rest again.
+    With ``ramp_s = 0`` the motion starts in the state X*, X*' (the paper's case).
+    """
+
+    axis: Literal["roll", "pitch", "yaw"] = "pitch"
+    amplitude_deg: float = Field(default=2.0, ge=0.0, le=30.0)
+    frequency_hz: float = Field(default=2.06, gt=0.0, le=50.0)
+    rest_s: float = Field(default=1.0, ge=0.0, description="before the motion, and after it")
+    motion_start_s: float | None = Field(default=None, ge=0.0, description="default: rest_s")
+    motion_s: float = Field(default=8.0, gt=0.0, description="length of the motion with ramps")
+    ramp_s: float = Field(default=0.5, ge=0.0)
+    drive: Literal["wrench"] = "wrench"
+    platform_offset_m: Vector = Field(
+        default=(1e-4, 0.0, 0.0), description="X_p0, at the motion's start"
+    )
+    cable_offset_m: float = Field(default=1e-4, description="X_w0, at the motion's start")
+
+    @model_validator(mode="after")
+    def _ramps_fit(self) -> Self:
+        if 2.0 * self.ramp_s > self.motion_s:
+            raise ValueError(
+                f"two ramps of {self.ramp_s} s do not fit a motion of {self.motion_s} s"
+            )
+        return self
+
+    @property
+    def start_s(self) -> float:
+        """When the motion starts."""
+        return self.rest_s if self.motion_start_s is None else self.motion_start_s
+
+    @property
+    def end_s(self) -> float:
+        """When the motion ends."""
+        return self.start_s + self.motion_s
+
+    @property
+    def duration_s(self) -> float:
+        """Rest, motion and rest."""
+        return self.end_s + self.rest_s
+
+    @property
+    def steady_window_s(self) -> tuple[float, float]:
+        """From the end of the first ramp to the start of the last."""
+        return self.start_s + self.ramp_s, self.end_s - self.ramp_s
+
+
+class Rig(Section):
+    """One machine."""
+
+    name: str = "unnamed rig"
+    platform: Platform
+    cable: tuple[Cable, ...]
+    bus: Bus = Bus()
+    camera: Camera | None = None
+    plate: Plate | None = None
+    excitation: Excitation = Excitation()
+    physics: dict[str, dict[str, object]] = Field(
+        default_factory=dict, description="left-out effects switched on"
+    )
+
+    @model_validator(mode="after")
+    def _eight_cables(self) -> Self:
+        if len(self.cable) != CABLES:
+            raise ValueError(f"{len(self.cable)} [[cable]] tables; a rig has {CABLES}, in order")
+        return self

@@ -1,0 +1,78 @@
+"""start.json and stop.json: what is known before the first sample, and how the run ended."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from cdpr8.rigfile.schema import Excitation, RegionOfInterest
+from cdpr8.runfolder.tables import SCHEMA_VERSION
+
+
+class Record(BaseModel):
+    """A JSON record; keys of later versions are kept, not refused."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+
+class Node(Record):
+    """One amplifier as it answered before the run."""
+
+    cable: int = Field(ge=1, le=8)
+    address: int
+    identity: str = Field(description="the answer to IDN?")
+    settings: dict[str, str] = Field(description="command -> answer, read back")
+    zero_mv_per_v: float = Field(default=0.0, description="host-side zero")
+    zero_taken: str = Field(default="never", description="when the zero was taken")
+
+
+class ClockAnchor(Record):
+    """The same instant on the run's clock and on the wall."""
+
+    t_s: float
+    wall: datetime
+
+
+class CameraStart(Record):
+    """The camera as it was set."""
+
+    source: str
+    fps: float
+    exposure_s: float
+    width_px: int
+    height_px: int
+    region_of_interest: RegionOfInterest | None = None
+
+
+class StartRecord(Record):
+    """start.json, on disk before the first sample."""
+
+    schema_version: int = SCHEMA_VERSION
+    id: str
+    simulated: bool
+    reconstruction: str | None = Field(
+        default=None, description="said in words where the data were made, not measured"
+    )
+    rig_file: str
+    rig_sha256: str
+    excitation: Excitation
+    motion_start_known: bool = Field(
+        description="whether the start of the motion was recorded on the tension clock"
+    )
+    nodes: tuple[Node, ...] = ()
+    camera: CameraStart | None = None
+    clock_anchor: ClockAnchor
+    seed: int | None = None
+    versions: dict[str, str] = Field(default_factory=dict)
+
+
+class StopRecord(Record):
+    """stop.json; a run without one was interrupted and is still loadable."""
+
+    schema_version: int = SCHEMA_VERSION
+    reason: Literal["duration", "interrupted", "stopped_at_once", "device", "disk_full"]
+    t_s: float
+    samples: dict[int, int] = Field(description="cable -> samples written")
+    frames: int
+    lost: dict[str, int] = Field(default_factory=dict, description="what was lost -> how often")
+    clock_anchor: ClockAnchor

@@ -1,0 +1,166 @@
+"""Writing a run folder: append-only tables that are valid when cut at any byte."""
+
+import json
+import os
+from collections.abc import Mapping
+from io import TextIOWrapper
+from pathlib import Path
+from typing import Self
+
+from pydantic import BaseModel
+
+from cdpr8.errors import DataError
+from cdpr8.runfolder.records import StartRecord, StopRecord
+from cdpr8.runfolder.tables import EVENTS, FRAMES, TENSION, EventKind, Table
+from cdpr8.runfolder.video import Image, VideoWriter
+
+Cell = float | int | str | None
+
+
+class TableWriter:
+    """Appends rows to one CSV table; a row is written whole, in one call.
+
+    Parameters
+    ----------
+    folder
+        The run folder.
+    table
+        Which table; its header is written at once.
+    """
+
+    def __init__(self, folder: Path, table: Table) -> None:
+        self._table = table
+        self._file: TextIOWrapper = (folder / table.file).open("x", encoding="utf-8", newline="")
+        self._file.write(",".join(table.names) + "\n")
+
+    def append(self, row: Mapping[str, Cell]) -> None:
+        """Write one row; columns left out stay empty."""
+        cells = [_spell(row.get(column.name), column.digits) for column in self._table.columns]
+        self._file.write(",".join(cells) + "\n")
+
+    def sync(self) -> None:
+        """Hand everything to the disk."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def flush(self) -> None:
+        """Hand everything to the operating system: it survives the death of this process."""
+        self._file.flush()
+
+    def close(self) -> None:
+        """Sync and close."""
+        self.sync()
+        self._file.close()
+
+
+class RunWriter:
+    """Writes one run folder (design, section 3).
+
+    Parameters
+    ----------
+    folder
+        Where; must not exist or be empty.
+    start
+        Written and synced to disk before this returns.
+    rig_text
+        The rig file as it was.
+
+    Raises
+    ------
+    DataError
+        The folder holds something already, or cannot be written.
+    """
+
+    def __init__(self, folder: Path, start: StartRecord, rig_text: str) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if any(folder.iterdir()):
+                raise DataError(
+                    "the run folder is not empty; nothing recorded is ever overwritten",
+                    where=str(folder),
+                    remedy="choose another name",
+                )
+            self.folder = folder
+            _write_synced(folder / "rig.toml", rig_text)
+            _write_synced(folder / "start.json", _as_json(start))
+            self.tension = TableWriter(folder, TENSION)
+            self.frames = TableWriter(folder, FRAMES)
+            self.events = TableWriter(folder, EVENTS)
+        except OSError as error:
+            raise DataError(
+                f"the run folder cannot be written: {error.strerror}",
+                where=str(folder),
+                remedy="choose a folder you may write to",
+            ) from None
+        self._video: VideoWriter | None = None
+        if start.camera is not None:
+            camera = start.camera
+            self._video = VideoWriter(
+                folder / "video.mkv", camera.width_px, camera.height_px, camera.fps
+            )
+        self._frame_count = 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def write_frame(self, image: Image, t_s: float, flags: int = 0) -> None:
+        """Append one frame, shape (height, width), and its row."""
+        if self._video is None:
+            raise ValueError("start.json names no camera, so this run has no video")
+        self._video.write(image, t_s)
+        self.frames.append({"frame": self._frame_count, "t_s": t_s, "flags": flags})
+        self._frame_count += 1
+
+    def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
+        """Append one event; it is handed to the operating system at once."""
+        self.events.append({"t_s": t_s, "kind": kind.value, "cable": cable, "detail": detail})
+        self.events.flush()
+
+    def stop(self, record: StopRecord) -> None:
+        """Close the tables and say how the run ended."""
+        self.close()
+        _write_synced(self.folder / "stop.json", _as_json(record))
+
+    def close(self) -> None:
+        """Close every file; without `stop` the run stays marked as interrupted."""
+        if self._video is not None:
+            self._video.close()
+            self._video = None
+        for table in (self.tension, self.frames, self.events):
+            if not table._file.closed:
+                table.close()
+
+
+def _spell(value: Cell, digits: int | None) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        if value != value:
+            return ""
+        return f"{value:.{digits}f}" if digits is not None else repr(value)
+    text = str(value)
+    if any(mark in text for mark in ',"\n\r'):
+        return '"' + text.replace('"', '""').replace("\n", " ").replace("\r", " ") + '"'
+    return text
+
+
+def _as_json(record: BaseModel) -> str:
+    return json.dumps(record.model_dump(mode="json"), indent=1) + "\n"
+
+
+def _write_synced(path: Path, text: str) -> None:
+    """Write a small file so that after a crash it is there whole or not at all."""
+    part = path.with_suffix(path.suffix + ".part")
+    with part.open("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    part.rename(path)
+    descriptor = os.open(path.parent, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

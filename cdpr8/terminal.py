@@ -1,0 +1,122 @@
+"""The one module that owns terminal output, exit codes and how an error is told.
+
+Results go to standard output; progress, notes and errors to standard error, so that a pipe or
+``--json`` carries results alone.
+"""
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from cdpr8.errors import ExitCode, ToolkitError
+
+if TYPE_CHECKING:
+    import typer
+    from rich.table import Table
+
+
+def run_app(app: "typer.Typer", arguments: Sequence[str] | None = None) -> int:
+    """Run a command line and turn every outcome into an exit code.
+
+    Parameters
+    ----------
+    app
+        The commands.
+    arguments
+        What follows the program's name; None takes the process's own.
+
+    Returns
+    -------
+    int
+        0 ok, 1 a check failed, 2 usage, 3 bad data or rig file, 4 device.
+    """
+    import click
+    import typer.main
+
+    command = typer.main.get_command(app)
+    try:
+        outcome = command.main(
+            args=None if arguments is None else list(arguments), standalone_mode=False
+        )
+        return int(outcome) if isinstance(outcome, int) else ExitCode.OK
+    except ToolkitError as error:
+        complain(error.sentence())
+        return int(error.exit_code)
+    except click.exceptions.Abort:
+        complain("stopped by the user")
+        return 130
+    except click.ClickException as error:
+        error.show()
+        return ExitCode.USAGE
+    except KeyboardInterrupt:
+        complain("stopped by the user")
+        return 130
+    except BrokenPipeError:
+        return ExitCode.OK
+
+
+def entry(app: "typer.Typer") -> Callable[[], None]:
+    """The console entry point of a set of commands."""
+
+    def main() -> None:
+        sys.exit(run_app(app))
+
+    return main
+
+
+def say(text: str) -> None:
+    """One line of result."""
+    print(text, flush=True)
+
+
+def note(text: str) -> None:
+    """One line that is not a result: what is being done, or what a user must know."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def complain(text: str) -> None:
+    """One error."""
+    print(f"error: {text}", file=sys.stderr, flush=True)
+
+
+def say_json(value: Any) -> None:
+    """A result for machines: strict JSON (no NaN; what is not known is null)."""
+    print(json.dumps(_strict(value), indent=1, allow_nan=False), flush=True)
+
+
+def say_table(table: "Table") -> None:
+    """A result for people; no wrapping where the output is not a terminal."""
+    from rich.console import Console
+
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=160)
+    console.print(table)
+
+
+@contextmanager
+def progress(what: str, total: int | None) -> Iterator[Callable[[], None]]:
+    """A progress bar on standard error; call what it yields once a step.
+
+    Where standard error is no terminal nothing is drawn.
+    """
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda: bar.advance(task)
+
+
+def _strict(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _strict(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_strict(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _strict(value.tolist())
+    if isinstance(value, float) and not abs(value) < float("inf"):
+        return None
+    return value

@@ -1,0 +1,1 @@
+"""Sample runs, small enough for git; see README.md here. Data only."""
