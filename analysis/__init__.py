@@ -1,0 +1,1 @@
+"""Recording against simulation: align, compare, and find what differs."""

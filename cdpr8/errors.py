@@ -47,7 +47,7 @@ class ToolkitError(Exception):
         return "\n".join(lines)
 
 
-class CheckFailed(ToolkitError):
+class CheckError(ToolkitError):
     """The data are readable and a check on them fails."""
 
     exit_code = ExitCode.CHECK_FAILED

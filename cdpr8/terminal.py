@@ -32,29 +32,20 @@ def run_app(app: "typer.Typer", arguments: Sequence[str] | None = None) -> int:
     int
         0 ok, 1 a check failed, 2 usage, 3 bad data or rig file, 4 device.
     """
-    import click
     import typer.main
 
     command = typer.main.get_command(app)
     try:
-        outcome = command.main(
-            args=None if arguments is None else list(arguments), standalone_mode=False
-        )
-        return int(outcome) if isinstance(outcome, int) else ExitCode.OK
+        # Typer itself tells usage errors and an abort, and leaves with their code.
+        command.main(args=None if arguments is None else list(arguments))
+    except SystemExit as left:
+        return left.code if isinstance(left.code, int) else ExitCode.OK
     except ToolkitError as error:
         complain(error.sentence())
         return int(error.exit_code)
-    except click.exceptions.Abort:
-        complain("stopped by the user")
-        return 130
-    except click.ClickException as error:
-        error.show()
-        return ExitCode.USAGE
-    except KeyboardInterrupt:
-        complain("stopped by the user")
-        return 130
     except BrokenPipeError:
         return ExitCode.OK
+    return ExitCode.OK
 
 
 def entry(app: "typer.Typer") -> Callable[[], None]:

@@ -51,8 +51,9 @@ def inertia_tensor(rig: Rig) -> Array:
 
 def anchors_from_centre_of_mass(rig: Rig) -> Array:
     """x_Pi of Eq. 1: anchors relative to the centre of mass, platform frame, shape (8, 3), in m."""
-    anchors = np.array([cable.anchor_m.value for cable in rig.cable])
-    return anchors - np.array(rig.platform.centre_of_mass_m.value)
+    anchors: Array = np.array([cable.anchor_m.value for cable in rig.cable])
+    anchors -= rig.platform.centre_of_mass_m.value
+    return anchors
 
 
 def structure_matrix_at_rest(rig: Rig) -> Array:
@@ -148,7 +149,7 @@ def _check_equilibrium(rig: Rig, where: Where) -> None:
     residual[2] -= weight
     variance = structure**2 @ np.array([cable.pretension_n.sigma**2 for cable in rig.cable])
     variance[2] += (rig.platform.mass_kg.sigma * STANDARD_GRAVITY_M_PER_S2) ** 2
-    variance += _geometry_variance(rig, structure, pretension)
+    variance += _geometry_variance(rig, pretension)
     arm = np.linalg.norm(anchors_from_centre_of_mass(rig), axis=1).max()
     floor = RESIDUAL_FLOOR * weight * np.array([1, 1, 1, arm, arm, arm])
     worst = int(np.argmax(np.abs(residual) / (EQUILIBRIUM_SIGMAS * np.sqrt(variance) + floor)))
@@ -169,7 +170,7 @@ def _check_equilibrium(rig: Rig, where: Where) -> None:
     )
 
 
-def _geometry_variance(rig: Rig, structure: Array, pretension: Array) -> Array:
+def _geometry_variance(rig: Rig, pretension: Array) -> Array:
     """Variance of the static wrench from the uncertainty of the points, shape (6,).
 
     A point off by s turns its cable by s/L and shifts its moment arm by s.

@@ -55,7 +55,7 @@ def load_intrinsics(
 
 
 def _read(path: Path, where: str) -> tuple[Any, Any, tuple[int, int] | None]:
-    """Camera matrix, distortion and (width, height) as they stand in the file, None where absent."""
+    """Camera matrix, distortion and (width, height) as the file has them, None where absent."""
     import cv2
 
     log_level = cv2.utils.logging.getLogLevel()

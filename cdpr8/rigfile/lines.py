@@ -28,7 +28,7 @@ def key_lines(text: str) -> dict[Location, int]:
     for number, line in enumerate(text.splitlines(), start=1):
         if header := _TABLE.match(line):
             parts = tuple(part.strip().strip("\"'") for part in header[2].split("."))
-            table = _with_indices(parts[:-1], counts) + (parts[-1],)
+            table = (*_with_indices(parts[:-1], counts), parts[-1])
             if header[1]:
                 counts[table] = counts.get(table, -1) + 1
                 table += (counts[table],)

@@ -105,25 +105,25 @@ def _first_fault(
     faults = error.errors()
     unknown = [fault for fault in faults if fault["type"] == "extra_forbidden"]
     fault = (unknown or faults)[0]
-    location = tuple(part for part in fault["loc"] if part in _spoken(raw, fault["loc"]))
+    location = _spoken(raw, fault["loc"])
     more = f" (and {len(faults) - 1} more faults)" if len(faults) > 1 else ""
     where = _where(name, lines, location or ("file",)) if location else name
     if fault["type"] == "extra_forbidden":
-        parent = _at(raw, location[:-1])
         return RigFileError(
             f"unknown key {location[-1]!r}{more}",
             where=where,
             allowed=_allowed_keys(location[:-1]),
-            remedy="correct the name or remove the line"
-            + ("" if isinstance(parent, dict) else " and its table"),
+            remedy="correct the name or remove the line",
         )
-    if fault["type"] == "missing":
+    if fault["type"] == "missing" and isinstance(fault["loc"][-1], str):
         return RigFileError(
-            f"{_spelled(tuple(fault['loc']))} is missing{more}",
+            f"{fault['loc'][-1]!r} is missing{more}",
             where=_where(name, lines, tuple(fault["loc"])),
-            remedy=f"add {fault['loc'][-1]} to the table",
+            remedy=f"add it to {_spelled(location) or 'the file'}",
         )
     message = fault["msg"].removeprefix("Value error, ")
+    if fault["type"] == "missing":
+        message = f"a list of at least {int(fault['loc'][-1]) + 1} numbers"
     value = fault["input"]
     shown = "" if isinstance(value, dict | list | tuple) and len(str(value)) > 80 else f" {value!r}"
     return RigFileError(f"value{shown} is refused{more}", where=where, allowed=message)
@@ -134,21 +134,12 @@ def _spoken(raw: Any, location: tuple[str | int, ...]) -> tuple[str | int, ...]:
     parts: list[str | int] = []
     here = raw
     for part in location:
-        if isinstance(here, dict) and part in here:
+        in_table = isinstance(here, dict) and part in here
+        in_array = isinstance(here, list) and isinstance(part, int) and part < len(here)
+        if in_table or in_array:
             here = here[part]
             parts.append(part)
-        elif isinstance(here, list) and isinstance(part, int) and part < len(here):
-            here = here[part]
-            parts.append(part)
-    if location and isinstance(location[-1], str) and location[-1] not in parts:
-        return tuple(parts)
     return tuple(parts)
-
-
-def _at(raw: Any, location: Location) -> Any:
-    for part in location:
-        raw = raw[part]
-    return raw
 
 
 def _allowed_keys(location: Location) -> str:

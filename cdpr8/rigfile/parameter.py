@@ -1,4 +1,4 @@
-"""A physical parameter as a row: value, how well it is known, unit and source (design, section 2)."""
+"""A physical parameter as a row: value, how well it is known, unit and source."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -78,7 +78,7 @@ def _row(kind: Kind) -> BeforeValidator:
         row = dict(raw) if isinstance(raw, dict) else {"value": raw}
         unit = row.setdefault("unit", kind.unit)
         if unit != kind.unit:
-            raise ValueError(f"unit is {unit!r}; allowed: {kind.unit!r}")
+            raise ValueError(f"unit {kind.unit!r}; the key says it too")
         row.setdefault("sigma", kind.sigma or kind.relative_sigma * _largest(row.get("value")))
         return row
 

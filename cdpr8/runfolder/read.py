@@ -72,7 +72,8 @@ class Run:
         rows = self.tension["cable"] == cable
         rows &= (self.tension["status"].to_numpy() & int(BAD_TENSION)) == 0
         rows &= self.tension["tension_n"].notna()
-        return self.tension[rows].sort_values("t_s", kind="stable").reset_index(drop=True)
+        good: pd.DataFrame = self.tension[rows]
+        return good.sort_values("t_s", kind="stable").reset_index(drop=True)
 
 
 def load_run(folder: Path) -> Run:

@@ -1,6 +1,7 @@
 """Writing a run folder: append-only tables that are valid when cut at any byte."""
 
 import json
+import math
 import os
 from collections.abc import Mapping
 from io import TextIOWrapper
@@ -138,7 +139,7 @@ def _spell(value: Cell, digits: int | None) -> str:
     if value is None:
         return ""
     if isinstance(value, float):
-        if value != value:
+        if math.isnan(value):
             return ""
         return f"{value:.{digits}f}" if digits is not None else repr(value)
     text = str(value)

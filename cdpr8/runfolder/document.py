@@ -1,0 +1,132 @@
+"""The run folder told to others: JSON Schemas for programs and docs/run-folder.md for people.
+
+``python -m cdpr8.runfolder.document`` writes both from the definitions; a test holds them to it.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from cdpr8.runfolder.records import StartRecord, StopRecord
+from cdpr8.runfolder.tables import (
+    SCHEMA_VERSION,
+    TABLES,
+    Column,
+    EventKind,
+    FrameFlag,
+    Table,
+    TensionStatus,
+)
+
+SCHEMA_FOLDER = Path(__file__).parent / "schemas" / f"v{SCHEMA_VERSION}"
+
+_MEANING = {
+    TensionStatus.NET_OVERFLOW: "net overflow; not used",
+    TensionStatus.GROSS_OVERFLOW: "gross overflow; not used",
+    TensionStatus.ADC_OVERFLOW: "input beyond the converter (about 2.5 mV/V); not used",
+    TensionStatus.STANDSTILL: "the amplifier sees standstill",
+    TensionStatus.LIMIT_1: "limit switch 1",
+    TensionStatus.LIMIT_2: "limit switch 2",
+    TensionStatus.TRIGGER: "trigger active",
+    TensionStatus.NOT_CONTIGUOUS: "the amplifier skipped values",
+    TensionStatus.HOST_OVERLOAD: "beyond the host's own limit for the force cell",
+    TensionStatus.STALE: "repeats an old value; not used",
+    FrameFlag.DROPPED_BEFORE: "a frame was lost before this one",
+    FrameFlag.REPEATED: "the same picture as the one before",
+    FrameFlag.BLACK: "nothing to be seen",
+    FrameFlag.NO_MARKER: "no marker found: the pose is empty",
+    FrameFlag.FEW_MARKERS: "some markers of the plate were not found",
+    FrameFlag.AMBIGUOUS: "both solutions of the planar pose fit about as well",
+    FrameFlag.BRANCH_FROM_PREVIOUS: "the solution nearest the frame before was taken",
+    FrameFlag.HIGH_REPROJECTION: "the plate fits this picture worse than the others",
+}
+
+
+def schemas() -> dict[str, dict[str, Any]]:
+    """File name -> JSON Schema, for the two records and for one row of each table."""
+    found = {
+        "start.schema.json": StartRecord.model_json_schema(),
+        "stop.schema.json": StopRecord.model_json_schema(),
+    }
+    for table in TABLES:
+        name = table.file.removesuffix(".csv")
+        found[f"{name}.row.schema.json"] = {
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "title": f"one row of {table.file}",
+            "description": table.meaning,
+            "type": "object",
+            "properties": {column.name: _property(column) for column in table.columns},
+            "required": [column.name for column in table.columns if not column.optional],
+        }
+    return found
+
+
+def page() -> str:
+    """docs/run-folder.md."""
+    sections = [_HEAD]
+    sections += [_table_section(table) for table in TABLES]
+    sections.append("## Status bits of tension.csv\n\n" + _bits(TensionStatus))
+    sections.append("## Flag bits of frames.csv and pose.csv\n\n" + _bits(FrameFlag))
+    sections.append(
+        "## Kinds of event\n\n" + ", ".join(f"`{kind.value}`" for kind in EventKind) + "\n"
+    )
+    return "\n".join(sections)
+
+
+_HEAD = f"""# The run folder (schema version {SCHEMA_VERSION})
+
+<!-- written by `python -m cdpr8.runfolder.document`; edit cdpr8/runfolder/, not this page -->
+
+A recording is a folder of plain files. Any program that writes them makes a run that every command
+here reads; the JSON Schemas are in `cdpr8/runfolder/schemas/`.
+
+| file | what it is |
+|---|---|
+| `start.json` | what was known before the first sample: on disk before it (`start.schema.json`) |
+| `rig.toml` | the rig file as it was (see [rig-file.md](rig-file.md)) |
+| `tension.csv` | the tensions, appended as they come |
+| `video.mkv` | the frames, grey and lossless (FFV1 in Matroska) |
+| `frames.csv` | the time of each frame |
+| `events.csv` | gaps, bad frames, lost amplifiers, start and end of the motion |
+| `stop.json` | how the run ended (`stop.schema.json`); absent: interrupted, and still readable |
+| `pose.csv` | written by `vision track` |
+| `results/` | written by `analysis` (into `./results/RUN` where the run is packaged or read-only) |
+
+Every file is valid when cut at any byte: a torn last line is dropped and said. Nothing is repaired:
+a damaged cell is refused with its file, line and column. An empty cell means: not measured. Times
+are seconds from the run's monotonic origin; positions in m, forces in N, angles in deg; cables are
+numbered 1 to 8; the pose is that of the platform's centre of mass in O-XYZ.
+"""
+
+
+def _property(column: Column) -> dict[str, Any]:
+    kind: Any = [column.type, "null"] if column.optional else column.type
+    description = f"{column.meaning} [{column.unit}]" if column.unit else column.meaning
+    return {"type": kind, "description": description}
+
+
+def _table_section(table: Table) -> str:
+    rows = "\n".join(
+        f"| `{c.name}` | {c.unit} | {c.meaning}{' (may be empty)' if c.optional else ''} |"
+        for c in table.columns
+    )
+    head = "| column | unit | meaning |\n|---|---|---|"
+    return f"## {table.file}\n\n{table.meaning}\n\n{head}\n{rows}\n"
+
+
+def _bits(flags: type[TensionStatus] | type[FrameFlag]) -> str:
+    rows = "\n".join(f"| {bit.value} | `{bit.name}` | {_MEANING[bit]} |" for bit in flags)
+    return f"| bit | name | meaning |\n|---|---|---|\n{rows}\n"
+
+
+def write() -> None:
+    """Write the schemas and the page."""
+    SCHEMA_FOLDER.mkdir(parents=True, exist_ok=True)
+    for name, schema in schemas().items():
+        (SCHEMA_FOLDER / name).write_text(json.dumps(schema, indent=1) + "\n")
+    docs = Path(__file__).parents[2] / "docs"
+    (docs / "run-folder.md").write_text(page())
+
+
+if __name__ == "__main__":
+    write()

@@ -1,0 +1,211 @@
+"""A run folder is valid when cut at any byte, and never repaired silently."""
+
+import json
+from datetime import UTC, datetime
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+from cdpr8.errors import DataError
+from cdpr8.rigfile import Excitation, packaged_rig_path
+from cdpr8.runfolder import (
+    CameraStart,
+    ClockAnchor,
+    EventKind,
+    RunWriter,
+    StartRecord,
+    StopRecord,
+    document,
+    find_run,
+    load_run,
+    read_video,
+    results_folder,
+    sample_data_folder,
+)
+
+ANCHOR = ClockAnchor(t_s=0.0, wall=datetime(2026, 1, 1, tzinfo=UTC))
+
+
+def start_record(camera: bool = True) -> StartRecord:
+    return StartRecord(
+        id="test",
+        simulated=True,
+        rig_file="rig.toml",
+        rig_sha256="0" * 64,
+        excitation=Excitation(),
+        motion_start_known=True,
+        camera=CameraStart(source="test", fps=16.0, exposure_s=0.005, width_px=64, height_px=48)
+        if camera
+        else None,
+        clock_anchor=ANCHOR,
+    )
+
+
+def write_run(folder: Path, samples: int = 40, frames: int = 20) -> None:
+    generator = np.random.default_rng(1)
+    with RunWriter(folder, start_record(), packaged_rig_path().read_text()) as run:
+        for n in range(samples):
+            run.tension.append(
+                {
+                    "t_s": n * 0.01,
+                    "cable": n % 8 + 1,
+                    "digits": n,
+                    "tension_n": 0.1 * n,
+                    "status": 0,
+                }
+            )
+        for n in range(frames):
+            image = generator.integers(0, 256, (48, 64), dtype=np.uint8)
+            run.write_frame(image, n / 16)
+        run.event(0.1, EventKind.GAP, 'a gap, with "quotes"', cable=3)
+        run.stop(
+            StopRecord(reason="duration", t_s=1, samples={1: 5}, frames=frames, clock_anchor=ANCHOR)
+        )
+
+
+def test_what_is_written_is_read_back(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    run = load_run(tmp_path / "run")
+    assert len(run.tension) == 40
+    assert run.tension["tension_n"].iloc[7] == pytest.approx(0.7)
+    assert run.events["detail"].iloc[0] == 'a gap, with "quotes"'
+    assert run.notes == ()
+    assert run.stop is not None
+    assert run.cable_tension(3)["digits"].tolist() == [2, 10, 18, 26, 34]
+
+
+def test_video_is_lossless(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    generator = np.random.default_rng(1)
+    frames = list(read_video(tmp_path / "run" / "video.mkv"))
+    assert len(frames) == 20
+    for n, (image, t_s) in enumerate(frames):
+        assert np.array_equal(image, generator.integers(0, 256, (48, 64), dtype=np.uint8))
+        assert t_s == pytest.approx(n / 16, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["tension.csv", "frames.csv", "events.csv"])
+def test_a_table_cut_at_any_byte_loads_without_its_torn_line(tmp_path: Path, name: str) -> None:
+    write_run(tmp_path / "run", samples=6, frames=3)
+    path = tmp_path / "run" / name
+    whole = path.read_bytes()
+    rows = len(getattr(load_run(tmp_path / "run"), name.removesuffix(".csv")))
+    for cut in range(len(whole)):
+        path.write_bytes(whole[:cut])
+        run = load_run(tmp_path / "run")
+        complete_lines = whole[:cut].count(b"\n")
+        table = getattr(run, name.removesuffix(".csv"))
+        assert len(table) == max(0, complete_lines - 1) <= rows
+        torn = cut > 0 and not whole[:cut].endswith(b"\n")
+        assert any("torn last line" in note for note in run.notes) == torn
+
+
+def test_a_video_cut_short_yields_its_whole_frames(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    path = tmp_path / "run" / "video.mkv"
+    whole = path.read_bytes()
+    generator = np.random.default_rng(1)
+    truth = [generator.integers(0, 256, (48, 64), dtype=np.uint8) for _ in range(20)]
+    path.write_bytes(whole[: len(whole) // 2])
+    frames = [image for image, _ in read_video(path)]
+    assert 5 <= len(frames) <= 11
+    for image, original in zip(frames, truth, strict=False):
+        assert np.array_equal(image, original)
+
+
+def test_a_missing_stop_record_means_interrupted_not_broken(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    (tmp_path / "run" / "stop.json").unlink()
+    run = load_run(tmp_path / "run")
+    assert run.stop is None
+    assert any("interrupted" in note for note in run.notes)
+
+
+def test_a_damaged_cell_is_refused_with_file_line_and_column(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    path = tmp_path / "run" / "tension.csv"
+    lines = path.read_text().splitlines(keepends=True)
+    lines[4] = lines[4].replace("0.3", "O.3")
+    path.write_text("".join(lines))
+    with pytest.raises(DataError, match=r"tension\.csv:5, column tension_n"):
+        load_run(tmp_path / "run")
+
+
+def test_a_missing_column_is_named(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    path = tmp_path / "run" / "tension.csv"
+    path.write_text(path.read_text().replace("tension_n", "force", 1))
+    with pytest.raises(DataError, match="lacks the column tension_n"):
+        load_run(tmp_path / "run")
+
+
+def test_a_folder_with_something_in_it_is_never_written_to(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    with pytest.raises(DataError, match="nothing recorded is ever overwritten"):
+        write_run(tmp_path / "run")
+
+
+def test_a_later_schema_version_is_refused(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    path = tmp_path / "run" / "start.json"
+    record = json.loads(path.read_text())
+    record["schema_version"] = 99
+    path.write_text(json.dumps(record))
+    with pytest.raises(DataError, match="update the toolkit"):
+        load_run(tmp_path / "run")
+
+
+def test_a_damaged_start_record_names_its_key(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    path = tmp_path / "run" / "start.json"
+    record = json.loads(path.read_text())
+    del record["excitation"]
+    path.write_text(json.dumps(record))
+    with pytest.raises(DataError, match="excitation"):
+        load_run(tmp_path / "run")
+
+
+def test_a_missing_run_lists_those_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_run(Path("runs/monday"))
+    assert find_run("monday") == Path("runs/monday")
+    with pytest.raises(DataError, match="monday"):
+        find_run("tuesday")
+
+
+def test_results_of_packaged_runs_go_to_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_run(Path("runs/monday"))
+    assert results_folder(Path("runs/monday")) == Path("runs/monday/results")
+    assert results_folder(sample_data_folder() / "run01") == Path("results/run01")
+
+
+def test_a_text_file_is_not_a_video(tmp_path: Path) -> None:
+    path = tmp_path / "junk.mp4"
+    path.write_text("this is not a video\n" * 100)
+    with pytest.raises(DataError, match="is not a video"):
+        list(read_video(path))
+
+
+def test_the_schemas_and_the_page_are_those_of_the_definitions() -> None:
+    root = Path(__file__).parents[2]
+    assert (root / "docs" / "run-folder.md").read_text() == document.page()
+    for name, schema in document.schemas().items():
+        assert json.loads((document.SCHEMA_FOLDER / name).read_text()) == schema
+
+
+def test_a_written_run_obeys_the_schemas(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    schemas = document.schemas()
+    for record in ("start", "stop"):
+        value = json.loads((tmp_path / "run" / f"{record}.json").read_text())
+        jsonschema.validate(value, schemas[f"{record}.schema.json"])
+    rows = json.loads(load_run(tmp_path / "run").tension.to_json(orient="records"))
+    for row in rows:
+        jsonschema.validate(row, schemas["tension.row.schema.json"])
