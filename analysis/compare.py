@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+SHOWN_CABLES = (1, 7)
+"""The cables the paper takes as examples; the others follow after them."""
+
 MIN_PERIODS = 2.0
 """A steady window shorter than this has no amplitude to speak of."""
 

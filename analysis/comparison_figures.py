@@ -1,14 +1,16 @@
 """Figures like the paper's 11 and 12, and the spectra behind its remark on frequencies."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analysis.compare import Comparison, Quantity
+from analysis.compare import SHOWN_CABLES, Comparison, Quantity
 from analysis.spectrum import SampleTimes
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SIMULATED = "#1f5fa8"
@@ -51,10 +53,14 @@ def write_figures(comparison: Comparison, folder: Path) -> list[Path]:
     written = []
     with mpl.rc_context(_STYLE):
         drawings = {f"{comparison.angle.measured.name}": _overlay(comparison, comparison.angle)}
-        for cable, quantity in comparison.tensions.items():
-            drawings[f"tension_{cable}"] = _overlay(comparison, quantity)
+        for cable in SHOWN_CABLES:
+            if cable in comparison.tensions:
+                drawings[f"tension_{cable}"] = _overlay(comparison, comparison.tensions[cable])
+        drawings["all"] = _all_quantities(comparison)
         drawings["spectra"] = _spectra(comparison)
         for name, figure in drawings.items():
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")  # laid out once; each format would do it again
             for ending in ("png", "svg"):
                 path = folder / f"compare_{name}.{ending}"
                 figure.savefig(path, metadata={"Date": None} if ending == "svg" else None)
@@ -67,9 +73,7 @@ def _overlay(comparison: Comparison, quantity: Quantity) -> "Figure":
     from matplotlib.figure import Figure
 
     series = quantity.measured
-    first = comparison.window_s[0]
-    periods = SHOWN_PERIODS / comparison.run.start.excitation.frequency_hz
-    last = min(first + periods, comparison.window_s[1])
+    first, last = _shown_window(comparison)
     shown = series.within((first, last))
     line = (quantity.simulated_t_s >= first) & (quantity.simulated_t_s <= last)
     residual = shown.value - np.interp(shown.t_s, quantity.simulated_t_s, quantity.simulated)
@@ -92,11 +96,11 @@ def _overlay(comparison: Comparison, quantity: Quantity) -> "Figure":
     )
     above.set_ylabel(f"{_axis_name(series.name)} ({series.unit})")
     above.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
-    below.axhspan(-2 * series.noise, 2 * series.noise, color=GRID, label="noise, ±2 sigma")
+    below.axhspan(-2 * series.noise, 2 * series.noise, color=GRID)
     below.plot(shown.t_s, residual, ".-", color=MEASURED, markersize=3, linewidth=0.6)
     below.set_ylabel(f"measured −\nsimulated ({series.unit})")
     below.set_xlabel("time (s)")
-    below.legend(loc="upper right", frameon=False, fontsize=8)
+    below.set_title("residual; grey: noise, ±2 sigma", loc="right", fontsize=8)
     kind = " (reconstruction)" if comparison.run.start.reconstruction else ""
     figure.suptitle(
         f"{comparison.run.name}{kind}: {_axis_name(series.name)}, relative error of the "
@@ -106,17 +110,51 @@ def _overlay(comparison: Comparison, quantity: Quantity) -> "Figure":
     return figure
 
 
-def _spectra(comparison: Comparison) -> "Figure":
-    """Amplitude spectra of every quantity, simulated and measured at the same sample times."""
+def _shown_window(comparison: Comparison) -> tuple[float, float]:
+    """The first periods of the steady window."""
+    first, last = comparison.window_s
+    periods = SHOWN_PERIODS / comparison.run.start.excitation.frequency_hz
+    return first, min(first + periods, last)
+
+
+def _panels(quantities: Sequence[Quantity]) -> "tuple[Figure, list[Axes]]":
+    """A figure with a panel for each quantity, three in a row."""
     from matplotlib.figure import Figure
 
-    quantities = comparison.quantities
     rows = (len(quantities) + 2) // 3
     figure = Figure(figsize=(11.0, 2.5 * rows), layout="constrained")
-    panels = figure.subplots(rows, 3, squeeze=False).ravel()
+    panels = list(figure.subplots(rows, 3, squeeze=False).ravel())
     for panel in panels[len(quantities) :]:
         panel.set_visible(False)
-    for panel, quantity in zip(panels, quantities, strict=False):
+    return figure, panels[: len(quantities)]
+
+
+def _all_quantities(comparison: Comparison) -> "Figure":
+    """Every quantity over a few periods: the pitch and all eight cables on one sheet."""
+    window = _shown_window(comparison)
+    figure, panels = _panels(comparison.quantities)
+    for panel, quantity in zip(panels, comparison.quantities, strict=True):
+        shown = quantity.measured.within(window)
+        line = (quantity.simulated_t_s >= window[0]) & (quantity.simulated_t_s <= window[1])
+        panel.plot(
+            quantity.simulated_t_s[line],
+            quantity.simulated[line],
+            color=SIMULATED,
+            linewidth=1.0,
+            label="simulated",
+        )
+        panel.plot(shown.t_s, shown.value, ".", color=MEASURED, markersize=2.0, label="measured")
+        panel.set_title(f"{quantity.measured.name}: {quantity.relative_error:.2%}", fontsize=10)
+        panel.set_xlabel("time (s)")
+        panel.set_ylabel(quantity.measured.unit)
+    panels[0].legend(frameon=False, fontsize=8)
+    return figure
+
+
+def _spectra(comparison: Comparison) -> "Figure":
+    """Amplitude spectra of every quantity, simulated and measured at the same sample times."""
+    figure, panels = _panels(comparison.quantities)
+    for panel, quantity in zip(panels, comparison.quantities, strict=True):
         steady = quantity.measured.within(comparison.window_s)
         times = SampleTimes(steady.t_s)
         simulated = np.interp(steady.t_s, quantity.simulated_t_s, quantity.simulated)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from analysis.compare import Comparison, Quantity
+from analysis.compare import SHOWN_CABLES, Comparison, Quantity
 from analysis.noise import COVERAGE
 from analysis.sine_fit import SineFit
 from analysis.spectrum import Line
@@ -10,9 +10,6 @@ from cdpr8.provenance import versions
 
 if TYPE_CHECKING:
     from rich.table import Table
-
-SHOWN_CABLES = (1, 7)
-"""The cables the paper shows; the others follow below."""
 
 
 def table(comparison: Comparison) -> "Table":

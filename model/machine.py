@@ -1,0 +1,118 @@
+"""One machine as plain arrays: what the equations of motion need of a rig file, and no more."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+from numpy.typing import NDArray
+
+from cdpr8 import STANDARD_GRAVITY_M_PER_S2
+from cdpr8.rigfile.checks import anchors_from_centre_of_mass, inertia_tensor
+from cdpr8.rigfile.schema import Rig
+from model.cable import tone_hz
+from model.kernel import Plant
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Platform and cables, in SI units.
+
+    Parameters
+    ----------
+    mass
+        m, kg.
+    inertia
+        About the centre of mass in the platform frame, shape (3, 3), kg m2.
+    base
+        B_i, base points in O-XYZ, shape (8, 3), m.
+    anchor
+        x_Pi, anchors relative to the centre of mass in the platform frame, shape (8, 3), m.
+    stiffness
+        k_wi, shape (8,), N/m.
+    pretension
+        T_0i, shape (8,), N.
+    line_density
+        rho_w A, shape (8,), kg/m.
+    damping
+        c_wi of Eq. 17, shape (8,), 1/s.
+    gravity
+        Along -Z, m/s2.
+    """
+
+    mass: float
+    inertia: Array
+    base: Array
+    anchor: Array
+    stiffness: Array
+    pretension: Array
+    line_density: Array
+    damping: Array
+    gravity: float = STANDARD_GRAVITY_M_PER_S2
+
+    @classmethod
+    def from_rig(cls, rig: Rig) -> Self:
+        """The machine a rig file describes."""
+        return cls(
+            mass=rig.platform.mass_kg.value,
+            inertia=inertia_tensor(rig),
+            base=np.array([cable.base_m.value for cable in rig.cable]),
+            anchor=anchors_from_centre_of_mass(rig),
+            stiffness=np.array([cable.stiffness_n_per_m.value for cable in rig.cable]),
+            pretension=np.array([cable.pretension_n.value for cable in rig.cable]),
+            line_density=np.array([cable.line_density_kg_per_m.value for cable in rig.cable]),
+            damping=np.array([cable.damping_1_per_s.value for cable in rig.cable]),
+        )
+
+    @property
+    def cables(self) -> int:
+        """Number of cables."""
+        return len(self.stiffness)
+
+    @property
+    def rest_length(self) -> Array:
+        """L_0i, lengths with the platform at rest, shape (8,), m."""
+        return np.asarray(np.linalg.norm(self.base - self.anchor, axis=1))
+
+    @property
+    def cable_tones_hz(self) -> Array:
+        """The cables' own first tones at rest, shape (8,), Hz."""
+        return np.asarray(tone_hz(self.pretension, self.line_density, self.rest_length))
+
+    @property
+    def platform_tones_hz(self) -> Array:
+        """Tones of the rigid platform on its elastic cables at rest, shape (6,), Hz.
+
+        From the cables' elastic stiffness J_A^T k J_A alone: what pretension adds is left out.
+        """
+        direction = (self.base - self.anchor) / self.rest_length[:, None]
+        structure = np.hstack([direction, np.cross(self.anchor, direction)])
+        stiffness = structure.T @ (self.stiffness[:, None] * structure)
+        inertia = np.zeros((6, 6))
+        inertia[:3, :3] = self.mass * np.eye(3)
+        inertia[3:, 3:] = self.inertia
+        squares = np.linalg.eigvals(np.linalg.solve(inertia, stiffness)).real
+        return np.sort(np.sqrt(np.maximum(squares, 0.0))) / (2.0 * np.pi)
+
+    def plant(self) -> Plant:
+        """The arrays in the order the kernel reads them."""
+        return Plant(
+            mass=float(self.mass),
+            gravity=float(self.gravity),
+            inertia=_packed(self.inertia),
+            inverse_inertia=_packed(np.linalg.inv(self.inertia)),
+            base=_packed(self.base),
+            anchor=_packed(self.anchor),
+            rest_length=_packed(self.rest_length),
+            stiffness=_packed(self.stiffness),
+            pretension=_packed(self.pretension),
+            line_density=_packed(self.line_density),
+            damping=_packed(self.damping),
+        )
+
+
+def _packed(values: npt.ArrayLike) -> Array:
+    """Contiguous and of one type, whatever came in: the kernel is compiled for exactly that."""
+    return np.ascontiguousarray(values, dtype=np.float64)
