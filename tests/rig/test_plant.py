@@ -1,0 +1,75 @@
+"""The platform behind the simulated rig: the model's machine, and friction that the model lacks."""
+
+import numpy as np
+import pytest
+
+from cdpr8.errors import UsageError
+from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
+from model import simulate
+from rig.simulated.plant import PlatformTrajectory, simulate_platform
+
+MOTION = Excitation(motion_s=3.0, rest_s=0.5)
+FRICTION_N = 0.3
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return load_rig(packaged_rig_path())
+
+
+@pytest.fixture(scope="module")
+def rubbing(rig: Rig) -> PlatformTrajectory:
+    return simulate_platform(rig, MOTION, np.full(8, FRICTION_N))
+
+
+def test_without_friction_it_is_the_models_machine(rig: Rig) -> None:
+    own = simulate_platform(rig, MOTION, np.zeros(8))
+    model = simulate(rig, MOTION)
+    assert np.abs(own.pose - model.pose).max() < 1e-9
+    assert np.abs(own.tension_n - model.tension_n).max() < 1e-6
+
+
+def test_friction_stands_between_the_elastic_and_the_measured_tension(
+    rig: Rig, rubbing: PlatformTrajectory
+) -> None:
+    base = np.array([cable.base_m.value for cable in rig.cable])
+    anchor = np.array([cable.anchor_m.value for cable in rig.cable])
+    pitch, position = rubbing.pose[:, 4], rubbing.pose[:, :3]
+    turned = np.stack(
+        [
+            np.cos(pitch)[:, None] * anchor[:, 0] + np.sin(pitch)[:, None] * anchor[:, 2],
+            np.broadcast_to(anchor[:, 1], (len(pitch), 8)),
+            -np.sin(pitch)[:, None] * anchor[:, 0] + np.cos(pitch)[:, None] * anchor[:, 2],
+        ],
+        axis=-1,
+    )
+    length = np.linalg.norm(base - position[:, None] - turned, axis=-1)
+    stiffness = np.array([cable.stiffness_n_per_m.value for cable in rig.cable])
+    pretension = np.array([cable.pretension_n.value for cable in rig.cable])
+    rest = np.linalg.norm(base - anchor, axis=1)
+    friction = rubbing.tension_n - pretension - stiffness * (length - rest)
+    rate = np.gradient(length[:, 0], rubbing.t_s)
+    # Past the start, where the initial disturbance moves the platform and not the bristles.
+    moving = (np.abs(rate) > 0.02) & (rubbing.t_s > MOTION.start_s + 0.1)
+    # Bristle damping is a hundredth of the friction at these rates.
+    assert np.allclose(friction[moving, 0], FRICTION_N * np.sign(rate[moving]), atol=0.03)
+
+
+def test_friction_lowers_the_amplitude(rig: Rig, rubbing: PlatformTrajectory) -> None:
+    free = simulate_platform(rig, MOTION, np.zeros(8))
+    assert np.abs(rubbing.pose[:, 4]).max() < 0.97 * np.abs(free.pose[:, 4]).max()
+
+
+def test_left_and_right_cables_of_a_symmetric_machine_move_alike(
+    rubbing: PlatformTrajectory,
+) -> None:
+    for left, right in ((1, 2), (4, 3), (5, 8), (6, 7)):
+        assert np.allclose(
+            rubbing.tension_n[:, left - 1], rubbing.tension_n[:, right - 1], atol=1e-9
+        )
+
+
+def test_a_motion_out_of_the_workspace_is_refused(rig: Rig) -> None:
+    wild = Excitation(platform_offset_m=(0.6, 0.0, 0.0), motion_s=3.0)
+    with pytest.raises(UsageError, match="leaves its workspace"):
+        simulate_platform(rig, wild, np.zeros(8))
