@@ -1,0 +1,114 @@
+"""One question, one answer: the master's rule of the line (section 2).
+
+There is no transaction number: a late answer cannot be told from the next one. So exactly one
+request is outstanding, and after any doubt the line is cleared and left silent for longer than
+the slowest answer before the next request.
+"""
+
+from cdpr8.clock import Clock
+from cdpr8.errors import DeviceError
+from rig.amplifier import message
+from rig.transport import Received, Transport
+
+ANSWER_S = 0.015
+"""Longest answer time of ordinary commands (section 4)."""
+
+MARGIN_S = 0.085
+"""Of the host: with `ANSWER_S` the 100 ms that section 10 asks for."""
+
+SETTLE_S = 0.02
+"""Silence after which no late answer is to be feared: above `ANSWER_S`."""
+
+TRIES = 3
+LONGEST_ANSWER = 64
+
+
+class NoAnswerError(DeviceError):
+    """A node stayed silent, or what it said was not whole.
+
+    Parameters
+    ----------
+    asked
+        The request.
+    came
+        What came of an answer.
+    where
+        The line.
+    """
+
+    def __init__(self, asked: bytes, came: bytes, where: str) -> None:
+        self.came = came
+        super().__init__(
+            f"{asked.decode('ascii', 'replace')} was not answered"
+            + (f" (only {came!r} came)" if came else ""),
+            where=where,
+            remedy="check power, address, baud rate and wiring; `rig scan` lists who answers",
+        )
+
+
+class Dialogue:
+    """Questions and answers on one line.
+
+    Parameters
+    ----------
+    transport
+        The line; nobody else may use it meanwhile.
+    """
+
+    def __init__(self, transport: Transport) -> None:
+        self.transport = transport
+
+    @property
+    def clock(self) -> Clock:
+        """The transport's clock."""
+        return self.transport.clock
+
+    def tell(self, *messages: bytes) -> None:
+        """Send what is not answered."""
+        self.transport.write(b"".join(messages))
+
+    def ask(self, request: bytes, *, tries: int = TRIES, margin_s: float = MARGIN_S) -> bytes:
+        """Send one request and return its answer with the line end.
+
+        Parameters
+        ----------
+        request
+            What is sent.
+        tries
+            How often at most.
+        margin_s
+            How much longer than documented an answer may take.
+
+        Raises
+        ------
+        NoAnswerError
+            Nothing whole came.
+        """
+        raw = b""
+        for attempt in range(tries):
+            if attempt:
+                self.settle()
+            self.transport.discard()
+            self.transport.write(request)
+            wait_s = (len(request) + LONGEST_ANSWER) * self.transport.line.char_s
+            received = self._read_line(self.clock.monotonic_s() + wait_s + ANSWER_S + margin_s)
+            if received.data.endswith(message.LINE_END) and not received.damaged:
+                return received.data
+            raw = received.data
+        raise NoAnswerError(request, raw, self.transport.name)
+
+    def settle(self) -> bytes:
+        """Clear the nodes' input and wait until no late answer can come; returns what came."""
+        self.transport.write(message.END)
+        return self.transport.drain(SETTLE_S)
+
+    def _read_line(self, deadline_s: float) -> Received:
+        data = b""
+        damaged = False
+        while True:
+            received = self.transport.read(1, deadline_s)
+            data += received.data
+            damaged |= received.damaged
+            whole = data.endswith(message.LINE_END) or len(data) >= LONGEST_ANSWER
+            if whole or not received.data:
+                return Received(data, received.last_byte_s, damaged)

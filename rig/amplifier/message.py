@@ -1,0 +1,47 @@
+"""Commands and answers as text: three letters, parameters, a semicolon (sections 2 and 3)."""
+
+from cdpr8.errors import DeviceError
+
+END = b";"
+"""Ends a command; alone, it clears a node's input buffer."""
+
+ACCEPTED = b"0\r\n"
+REFUSED = b"?\r\n"
+LINE_END = b"\r\n"
+
+BROADCAST = 98
+"""`S98;` addresses every node, and none answers."""
+
+ADDRESSES = range(32)
+
+
+def command(mnemonic: str, *parameters: int | str) -> bytes:
+    """A command: numbers as they are, texts in double quotes (section 2)."""
+    spelled = (f'"{item}"' if isinstance(item, str) else str(item) for item in parameters)
+    return (mnemonic + ",".join(spelled)).encode("ascii") + END
+
+
+def query(mnemonic: str) -> bytes:
+    """A question."""
+    return mnemonic.encode("ascii") + b"?" + END
+
+
+def select(address: int) -> bytes:
+    """`Sxx;`: the node listens until another S; in bus mode it answers with its newest value."""
+    return f"S{address:02d}".encode("ascii") + END
+
+
+def parse_integer(answer: bytes, asked: str) -> int:
+    """The number in an answer of whatever width.
+
+    Raises
+    ------
+    DeviceError
+        The answer is no number.
+    """
+    try:
+        return int(answer.removesuffix(LINE_END))
+    except ValueError:
+        raise DeviceError(
+            f"{asked} was answered with {answer!r}", allowed="a whole number and CR LF"
+        ) from None

@@ -1,0 +1,110 @@
+"""Opening what a rig file names: the amplifiers' line and the camera, real or simulated."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Protocol
+
+from cdpr8.clock import Clock, VirtualClock
+from cdpr8.errors import DeviceError
+from cdpr8.rigfile import Excitation, Rig
+from rig.camera import Camera, CaptureCamera
+from rig.transport import Transport
+
+ENTRY_POINTS = "cdpr8.rigs"
+"""Entry-point group of rigs that are not hardware; the port's name chooses."""
+
+
+@dataclass
+class Machine:
+    """An opened rig.
+
+    Attributes
+    ----------
+    transport
+        The amplifiers' line.
+    camera
+        None where the rig has none.
+    simulated
+        Whether the data are made, not measured.
+    motion_known
+        Whether this machine performs the excitation itself, on the run's clock.
+    begin
+        Told the run's origin on the clock's seconds, before the first sample.
+    close
+        Gives everything back.
+    """
+
+    transport: Transport
+    camera: Camera | None
+    simulated: bool
+    motion_known: bool
+    begin: Callable[[float], None]
+    close: Callable[[], None]
+
+
+class OpenRig(Protocol):
+    """What an entry point of the group ``cdpr8.rigs`` must be."""
+
+    def __call__(self, rig: Rig, excitation: Excitation, clock: Clock, *, seed: int) -> Machine:
+        """Open the rig; `seed` settles everything random about it."""
+        ...
+
+
+def open_machine(rig: Rig, excitation: Excitation, clock: Clock, *, seed: int = 0) -> Machine:
+    """Open the rig that a rig file describes.
+
+    Parameters
+    ----------
+    rig
+        ``bus.port`` is a serial port, or the name of an entry point such as ``simulated``.
+    excitation
+        The motion that a simulated rig performs.
+    clock
+        Of all times; hardware takes a real one.
+    seed
+        Of a simulated rig.
+
+    Raises
+    ------
+    DeviceError
+        A port or camera is missing, taken, or not what the rig file says.
+    """
+    for entry in metadata.entry_points(group=ENTRY_POINTS):
+        if entry.name == rig.bus.port:
+            opener: OpenRig = entry.load()
+            return opener(rig, excitation, clock, seed=seed)
+    if isinstance(clock, VirtualClock):
+        raise DeviceError(
+            f"port {rig.bus.port!r} is hardware, which keeps no virtual time",
+            remedy="leave --virtual out, or add --simulated",
+        )
+    return _open_hardware(rig, clock)
+
+
+def _open_hardware(rig: Rig, clock: Clock) -> Machine:
+    from rig.assignment import line_settings
+    from rig.transport import open_serial_port
+
+    transport = open_serial_port(rig.bus.port, line_settings(rig), clock)
+    camera: Camera | None = None
+    try:
+        if rig.camera is not None and rig.camera.source != "simulated":
+            camera = CaptureCamera(rig.camera, clock)
+    except Exception:
+        transport.close()
+        raise
+
+    def close() -> None:
+        transport.close()
+        if camera is not None:
+            camera.close()
+
+    return Machine(
+        transport=transport,
+        camera=camera,
+        simulated=False,
+        motion_known=False,
+        begin=lambda _: None,
+        close=close,
+    )

@@ -1,0 +1,267 @@
+"""Recording a run: open the rig, start the bus, write what comes until the end."""
+
+import errno
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from cdpr8.clock import Clock, RealClock, VirtualClock
+from cdpr8.errors import DataError, DeviceError, ToolkitError
+from cdpr8.rigfile import Excitation, Rig
+from cdpr8.runfolder import (
+    ClockAnchor,
+    EventKind,
+    RunWriter,
+    StartRecord,
+    StopRecord,
+)
+from rig.announcements import AnnouncementStream, announcements
+from rig.bus import Bus
+from rig.machine import Machine, open_machine
+from rig.schedule import run_by_time, run_in_threads
+from rig.scribe import DirectScribe, Scribe, ThreadedScribe
+from rig.start_record import start_record
+from rig.stop import StopRequest
+from rig.streams import BusStream, CameraStream, Span, Stream
+from rig.tally import Tally
+
+LEAD_S = 0.25
+"""From the start record's clock anchor to the run's origin: time to get it onto the disk."""
+
+Watch = Callable[[Tally, float], None]
+"""Shown the counts and the run's time, now and then; may stall, may fail."""
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What was recorded.
+
+    Attributes
+    ----------
+    folder
+        The run folder.
+    start, stop
+        Its records.
+    fault
+        What ended it before its time, None where nothing did.
+    """
+
+    folder: Path
+    start: StartRecord
+    stop: StopRecord
+    fault: ToolkitError | None = None
+
+    def rate_per_s(self, cable: int) -> float:
+        """Mean rate of a cable's samples."""
+        return self.stop.samples[cable] / self.stop.t_s if self.stop.t_s > 0 else 0.0
+
+
+def record(
+    rig: Rig,
+    rig_text: str,
+    folder: Path,
+    *,
+    excitation: Excitation | None = None,
+    clock: Clock | None = None,
+    seed: int = 0,
+    machine: Machine | None = None,
+    reconstruction: str | None = None,
+    rig_file: str = "rig.toml",
+    stop: StopRequest | None = None,
+    watch: Watch | None = None,
+) -> Recording:
+    """Record one run.
+
+    On a `VirtualClock` the simulated rig runs as fast as it can, and a seed repeats the run to
+    the byte (with the same versions of the libraries).
+
+    Parameters
+    ----------
+    rig, rig_text
+        The rig, and the file it was read from.
+    folder
+        The run folder; must not exist or be empty.
+    excitation
+        The motion, whose ``duration_s`` is the recording's; None takes the rig file's.
+    clock
+        None takes the computer's.
+    seed
+        Of a simulated rig.
+    machine
+        An opened rig, which is closed at the end; None opens what the rig file names. Another
+        platform, or other friction: ``rig.simulated.open_rig(..., friction_n=...)``.
+    reconstruction
+        Said in start.json where the data are made to stand for others.
+    rig_file
+        Name of the rig file, for start.json.
+    stop
+        A wish to end before the time.
+    watch
+        Called now and then on a real clock with the counts and the run's time.
+
+    Returns
+    -------
+    Recording
+        Where it is and how it ended; ``fault`` says what ended it early.
+
+    Raises
+    ------
+    DataError
+        The folder is not empty or cannot be written.
+    DeviceError
+        A port, an amplifier or a camera is not there, or not what the rig file says.
+    KeyboardInterrupt
+        A stop was wished for before anything was recorded.
+    """
+    excitation = excitation or rig.excitation
+    clock = clock or RealClock()
+    stop = stop or StopRequest()
+    try:
+        _require_empty(folder)
+        machine = machine or open_machine(rig, excitation, clock, seed=seed)
+        session = _Session(machine, rig, clock, stop, excitation)
+        if stop.requested:
+            raise KeyboardInterrupt  # nothing has been recorded
+        now_s = clock.monotonic_s()
+        start = start_record(
+            machine,
+            session.stations,
+            rig,
+            rig_text,
+            excitation,
+            rig_file=rig_file,
+            reconstruction=reconstruction,
+            seed=seed,
+            anchor=ClockAnchor(t_s=-LEAD_S, wall=clock.wall()),
+        )
+        writer = RunWriter(folder, start, rig_text)
+        stop_record, fault = session.run(writer, now_s + LEAD_S, watch)
+        return Recording(folder, start, stop_record, fault)
+    finally:
+        if machine is not None:
+            machine.close()
+
+
+class _Session:
+    """A started rig, from its configured bus to its stop record."""
+
+    def __init__(
+        self,
+        machine: Machine,
+        rig: Rig,
+        clock: Clock,
+        stop: StopRequest,
+        excitation: Excitation,
+    ) -> None:
+        self._machine = machine
+        self._clock = clock
+        self._stop = stop
+        self._excitation = excitation
+        self._tally = Tally()
+        self._bus = Bus(machine.transport, rig)
+        self.stations = self._bus.start()
+        if machine.camera is not None:
+            import av  # noqa: F401  # now, not between the start record and the first sample
+
+    def run(
+        self, writer: RunWriter, origin_s: float, watch: Watch | None
+    ) -> tuple[StopRecord, ToolkitError | None]:
+        """Record from the origin until the end, a wish to stop, or a fault."""
+        span = Span(origin_s, origin_s + self._excitation.duration_s)
+        self._machine.begin(origin_s)
+        virtual = isinstance(self._clock, VirtualClock)
+        scribe: Scribe = (
+            DirectScribe(writer, self._tally)
+            if virtual
+            else ThreadedScribe(writer, self._tally, self._clock, hurry=lambda: self._stop.at_once)
+        )
+        fault: ToolkitError | None = None
+        try:
+            self._clock.sleep_until(origin_s)
+            streams = self._streams(scribe, span)
+            if virtual:
+                run_by_time(streams, self._stop)
+            else:
+                run_in_threads(streams, self._stop, lambda: scribe.failure, self._look(watch, span))
+        except DeviceError as error:
+            fault = error
+        except OSError as error:
+            fault = _disk_fault(error, writer.folder)
+        ended_s = self._clock.monotonic_s() - origin_s
+        if self._stop.requested:
+            scribe.event(ended_s, EventKind.INTERRUPTED, "stopped by the user")
+        with suppress(DeviceError):
+            self._bus.stop()
+        return self._finish(writer, scribe, ended_s, fault)
+
+    def _streams(self, scribe: Scribe, span: Span) -> list[Stream]:
+        machine, tally = self._machine, self._tally
+        streams: list[Stream] = [BusStream(self._bus, self.stations, scribe, tally, span)]
+        if machine.camera is not None:
+            machine.camera.start(span.origin_s)
+            streams.append(CameraStream(machine.camera, scribe, tally, span))
+        clock = self._clock
+        own = VirtualClock(clock.epoch, clock.now_s) if isinstance(clock, VirtualClock) else clock
+        announced = announcements(self._excitation, machine.motion_known)
+        streams.append(AnnouncementStream(announced, own, scribe, span))
+        return streams
+
+    def _look(self, watch: Watch | None, span: Span) -> Callable[[], None] | None:
+        if watch is None:
+            return None
+        return lambda: watch(self._tally, self._clock.monotonic_s() - span.origin_s)
+
+    def _finish(
+        self, writer: RunWriter, scribe: Scribe, ended_s: float, fault: ToolkitError | None
+    ) -> tuple[StopRecord, ToolkitError | None]:
+        scribe.close()
+        if fault is None and isinstance(scribe.failure, OSError):
+            fault = _disk_fault(scribe.failure, writer.folder)
+        tally = self._tally
+        record_ = StopRecord(
+            reason=_reason(self._stop, fault),
+            t_s=round(ended_s, 6),
+            samples=tally.samples,
+            frames=tally.frames,
+            lost=tally.lost,
+            clock_anchor=ClockAnchor(t_s=round(ended_s, 6), wall=self._clock.wall()),
+        )
+        try:
+            writer.stop(record_)
+        except OSError as error:
+            fault = fault or _disk_fault(error, writer.folder)
+        return record_, fault
+
+
+def _reason(
+    stop: StopRequest, fault: ToolkitError | None
+) -> Literal["duration", "interrupted", "stopped_at_once", "device", "disk_full"]:
+    if isinstance(fault, DeviceError):
+        return "device"
+    if fault is not None:
+        return "disk_full"
+    if stop.requested:
+        return "stopped_at_once" if stop.at_once else "interrupted"
+    return "duration"
+
+
+def _require_empty(folder: Path) -> None:
+    """Told before any device is opened; `RunWriter` holds to it."""
+    if folder.is_dir() and any(folder.iterdir()):
+        raise DataError(
+            "the run folder is not empty; nothing recorded is ever overwritten",
+            where=str(folder),
+            remedy="choose another name",
+        )
+
+
+def _disk_fault(error: OSError, folder: Path) -> DataError:
+    full = error.errno == errno.ENOSPC
+    return DataError(
+        "the disk is full" if full else f"the run cannot be written: {error.strerror or error}",
+        where=str(folder),
+        remedy="what was written before stays readable; "
+        + ("free some space and record again" if full else "check the disk"),
+    )

@@ -1,0 +1,255 @@
+"""Who writes: from the streams into the run folder, never holding a stream up.
+
+On a virtual clock everything is written at once, so that a seed repeats a run to the byte. On a
+real clock one thread writes tables and syncs them to disk every `SYNC_S`, another encodes video:
+neither a slow disk nor a slow encoder stalls the bus.
+"""
+
+import queue
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from cdpr8.clock import Clock
+from cdpr8.runfolder import EventKind, FrameFlag, RunWriter, TableWriter
+from rig.camera import Image
+from rig.tally import Tally
+
+SYNC_S = 0.25
+"""Tables are synced to disk this often: what a power cut can take at most."""
+
+FLUSH_S = 0.05
+"""Tables are handed to the operating system this often: what kill -9 can take at most."""
+
+FRAMES_WAITING = 64
+"""Frames that may wait for the encoder; beyond, frames are dropped, counted and flagged."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One row of tension.csv; times in s of the run."""
+
+    t_s: float
+    cable: int
+    digits: int
+    tension_n: float
+    status: int
+    request_s: float
+    received_s: float
+
+
+class Scribe(Protocol):
+    """What a stream hands its data to."""
+
+    def sample(self, sample: Sample) -> None:
+        """Take one sample."""
+        ...
+
+    def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
+        """Take one event."""
+        ...
+
+    def frame(self, image: Image, t_s: float, flags: int) -> None:
+        """Take one frame, shape (height, width)."""
+        ...
+
+    @property
+    def failure(self) -> BaseException | None:
+        """What stopped the writing: a full disk, most likely; None while all is well."""
+        ...
+
+    def close(self) -> None:
+        """Write what is still waiting."""
+        ...
+
+
+class DirectScribe:
+    """Writes at once.
+
+    Parameters
+    ----------
+    writer
+        Of the run folder.
+    tally
+        Takes the count of frames and the last event.
+    """
+
+    def __init__(self, writer: RunWriter, tally: Tally) -> None:
+        self._writer = writer
+        self._tally = tally
+
+    def sample(self, sample: Sample) -> None:
+        """Write one sample."""
+        self._writer.tension.append(_row(sample))
+
+    def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
+        """Write one event."""
+        self._writer.event(t_s, kind, detail, cable)
+        self._tally.last_event = f"{kind.value}: {detail}"
+
+    def frame(self, image: Image, t_s: float, flags: int) -> None:
+        """Write one frame."""
+        self._writer.write_frame(image, t_s, flags)
+        self._tally.frames += 1
+
+    @property
+    def failure(self) -> BaseException | None:
+        """None: a failure is raised where it happens."""
+        return None
+
+    def close(self) -> None:
+        """Nothing waits."""
+
+
+class ThreadedScribe:
+    """Takes data at once and writes them on threads of its own.
+
+    Parameters
+    ----------
+    writer
+        Of the run folder.
+    tally
+        Takes the count of frames, the last event and dropped frames.
+    clock
+        Real.
+    hurry
+        Says when frames that still wait are to be given up.
+    """
+
+    def __init__(
+        self, writer: RunWriter, tally: Tally, clock: Clock, hurry: Callable[[], bool]
+    ) -> None:
+        self._writer = writer
+        self._tally = tally
+        self._clock = clock
+        self._lines: queue.SimpleQueue[Sample | _Event | None] = queue.SimpleQueue()
+        self._frames: queue.Queue[_Frame | None] = queue.Queue(FRAMES_WAITING)
+        self._dropping = False
+        self._hurry = hurry
+        self._failure: BaseException | None = None
+        self._threads = [
+            threading.Thread(target=self._guard, args=(work,), name=name, daemon=True)
+            for name, work in (("tables", self._write_lines), ("video", self._write_frames))
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    def sample(self, sample: Sample) -> None:
+        """Queue one sample; never waits."""
+        self._lines.put(sample)
+
+    def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
+        """Queue one event; never waits."""
+        self._lines.put(_Event(t_s, kind, detail, cable))
+
+    def frame(self, image: Image, t_s: float, flags: int) -> None:
+        """Queue one frame; where too many wait already it is dropped, counted and said."""
+        if self._dropping:
+            flags |= FrameFlag.DROPPED_BEFORE
+        try:
+            self._frames.put_nowait(_Frame(image, t_s, int(flags)))
+        except queue.Full:
+            self._tally.lose("frame_dropped")
+            if not self._dropping:
+                self.event(t_s, EventKind.FRAME_DROPPED, "the encoder cannot keep up")
+            self._dropping = True
+        else:
+            self._dropping = False
+
+    @property
+    def failure(self) -> BaseException | None:
+        """What stopped a thread."""
+        return self._failure
+
+    def close(self) -> None:
+        """Write what is waiting and end the threads."""
+        tables, video = self._threads
+        while video.is_alive():
+            try:
+                self._frames.put(None, timeout=FLUSH_S)
+                break
+            except queue.Full:
+                continue
+        video.join()
+        self._lines.put(None)
+        tables.join()
+
+    def _guard(self, work: Callable[[], None]) -> None:
+        try:
+            work()
+        except Exception as error:  # handed to the recorder, which tells the user
+            self._failure = error
+
+    def _write_lines(self) -> None:
+        writer = self._writer
+        tables = (writer.tension, writer.events)
+        flushed_s = synced_s = self._clock.monotonic_s()
+        while True:
+            try:
+                line = self._lines.get(timeout=FLUSH_S)
+            except queue.Empty:
+                pass
+            else:
+                if line is None:
+                    return
+                self._write_line(line)
+            now_s = self._clock.monotonic_s()
+            if now_s - synced_s >= SYNC_S:
+                _each(tables, TableWriter.sync)
+                synced_s = flushed_s = now_s
+            elif now_s - flushed_s >= FLUSH_S:
+                _each(tables, TableWriter.flush)
+                flushed_s = now_s
+
+    def _write_line(self, line: "Sample | _Event") -> None:
+        if isinstance(line, Sample):
+            self._writer.tension.append(_row(line))
+        else:
+            self._writer.event(line.t_s, line.kind, line.detail, line.cable)
+            self._tally.last_event = f"{line.kind.value}: {line.detail}"
+
+    def _write_frames(self) -> None:
+        synced_s = self._clock.monotonic_s()
+        while (frame := self._frames.get()) is not None:
+            if self._hurry():
+                self._tally.lose("frame_dropped")
+                continue
+            self._writer.write_frame(frame.image, frame.t_s, frame.flags)
+            self._tally.frames += 1
+            self._writer.frames.flush()
+            if self._clock.monotonic_s() - synced_s >= SYNC_S:
+                self._writer.frames.sync()
+                synced_s = self._clock.monotonic_s()
+
+
+@dataclass(frozen=True, slots=True)
+class _Event:
+    t_s: float
+    kind: EventKind
+    detail: str
+    cable: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    image: Image
+    t_s: float
+    flags: int
+
+
+def _row(sample: Sample) -> dict[str, float | int | str | None]:
+    return {
+        "t_s": sample.t_s,
+        "cable": sample.cable,
+        "digits": sample.digits,
+        "tension_n": sample.tension_n,
+        "status": sample.status,
+        "request_s": sample.request_s,
+        "received_s": sample.received_s,
+    }
+
+
+def _each(tables: tuple[TableWriter, ...], act: Callable[[TableWriter], None]) -> None:
+    for table in tables:
+        act(table)

@@ -1,0 +1,195 @@
+"""Putting the simulated rig together, and its entry point."""
+
+import os
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdpr8.clock import Clock, VirtualClock
+from cdpr8.rigfile import Excitation, Rig
+from rig.amplifier.frame import FrameFormat
+from rig.amplifier.profile import FIT
+from rig.amplifier.scaling import Scaling
+from rig.assignment import amplifiers, line_settings
+from rig.camera import Camera
+from rig.machine import Machine
+from rig.simulated.bus import SimulatedBus
+from rig.simulated.exposures import Exposer, ExposureSequence
+from rig.simulated.faults import LineFaults
+from rig.simulated.node import SimulatedNode
+from rig.simulated.signal import Array, Crystal, NodeSignal
+from rig.transport import MemoryTransport, Transport
+
+CRYSTAL_PPM = 50.0
+"""Crystals of the nodes are off by up to this much, either way."""
+
+
+class Platform(Protocol):
+    """What moves: `rig.simulated.plant.PlatformTrajectory`, or a stand-in in tests."""
+
+    def pose_at(self, t_s: Array) -> Array:
+        """Poses at times of the run, shape (n, 6), m and rad."""
+        ...
+
+    def tension_at(self, cable: int, t_s: Array) -> Array:
+        """Tension of one cable, 1 to 8, at times of the run, shape (n,), N."""
+        ...
+
+
+def open_rig(
+    rig: Rig,
+    excitation: Excitation,
+    clock: Clock,
+    *,
+    seed: int = 0,
+    platform: Platform | None = None,
+    friction_n: NDArray[np.float64] | None = None,
+) -> Machine:
+    """Open the simulated rig.
+
+    Parameters
+    ----------
+    rig
+        The machine to simulate.
+    excitation
+        The motion it performs, from the run's origin on.
+    clock
+        Real: the amplifiers hang on a pseudo-terminal, or in memory where there are none.
+        Virtual: in memory; the transport moves this clock, the camera has one of its own.
+    seed
+        Settles noise, crystals and pictures.
+    platform
+        What moves; None simulates it.
+    friction_n
+        Coulomb friction at each pulley, shape (8,), in N, where `platform` is None; None takes
+        the simulated rig's own.
+
+    Returns
+    -------
+    Machine
+        For `rig.recorder.record`.
+    """
+    if platform is None:
+        from rig.simulated.plant import simulate_platform
+
+        platform = simulate_platform(rig, excitation, friction_n)
+    exposer: Exposer | None = None
+    camera = rig.camera
+    if camera is not None and rig.plate is not None and camera.source == "simulated":
+        from rig.simulated.camera import SimulatedCamera
+
+        exposer = SimulatedCamera(
+            camera,
+            rig.plate,
+            platform.pose_at,
+            np.random.default_rng(np.random.SeedSequence([seed, _CAMERA_STREAM])),
+            centre_of_mass_m=rig.platform.centre_of_mass_m.value,
+        )
+    return assemble(rig, platform, exposer, clock, seed=seed)
+
+
+def assemble(
+    rig: Rig,
+    platform: Platform,
+    exposer: Exposer | None,
+    clock: Clock,
+    *,
+    seed: int = 0,
+    faults: LineFaults | None = None,
+) -> Machine:
+    """The simulated rig from its parts.
+
+    Parameters
+    ----------
+    rig
+        Whose amplifiers hang on the bus.
+    platform
+        What moves.
+    exposer
+        Makes the pictures; None leaves the camera out.
+    clock, seed
+        As in `open_rig`.
+    faults
+        What the line does to bytes.
+    """
+    bus = SimulatedBus(
+        simulated_nodes(rig, platform, clock.monotonic_s(), seed), line_settings(rig), faults
+    )
+    transport, close = _transport(bus, clock)
+    camera: Camera | None = None
+    if exposer is not None:
+        own = VirtualClock(clock.epoch, clock.now_s) if isinstance(clock, VirtualClock) else clock
+        camera = ExposureSequence(exposer, own)
+
+    def begin(origin_s: float) -> None:
+        for node in bus.nodes:
+            node.signal.begin(origin_s)
+
+    return Machine(
+        transport=transport,
+        camera=camera,
+        simulated=True,
+        motion_known=True,
+        begin=begin,
+        close=close,
+    )
+
+
+def simulated_nodes(
+    rig: Rig, platform: Platform, power_on_s: float, seed: int
+) -> tuple[SimulatedNode, ...]:
+    """The eight amplifiers of a rig file, each on its own crystal."""
+    format_ = FrameFormat()
+    nodes = []
+    for cable, amplifier in amplifiers(rig).items():
+        draws = np.random.default_rng(np.random.SeedSequence([seed, _NODE_STREAM, cable]))
+        crystal = Crystal(
+            power_on_s, phase=draws.uniform(), ppm=draws.uniform(-CRYSTAL_PPM, CRYSTAL_PPM)
+        )
+        signal = NodeSignal(
+            _tension_of(platform, cable),
+            Scaling.of(amplifier, format_),
+            FIT,
+            crystal,
+            amplifier.noise_n,
+            (seed, cable),
+        )
+        nodes.append(
+            SimulatedNode(
+                signal,
+                amplifier.address,
+                amplifier.serial_number or f"SIM{cable:04d}",
+                baud=rig.bus.baud,
+                parity=1 if rig.bus.parity == "even" else 0,
+            )
+        )
+    return tuple(nodes)
+
+
+def _tension_of(platform: Platform, cable: int) -> Callable[[Array], Array]:
+    return lambda t_s: platform.tension_at(cable, t_s)
+
+
+def _transport(bus: SimulatedBus, clock: Clock) -> tuple[Transport, Callable[[], None]]:
+    """The line to a simulated bus, and how it is given back."""
+    if isinstance(clock, VirtualClock) or not hasattr(os, "openpty"):
+        memory = MemoryTransport(bus, bus.line, clock, "simulated bus")
+        return memory, memory.close
+    from rig.simulated.pseudo_terminal import PseudoTerminal
+    from rig.transport import open_serial_port
+
+    terminal = PseudoTerminal(bus, clock)
+    transport = open_serial_port(terminal.path, bus.line, clock)
+
+    def close() -> None:
+        transport.close()
+        terminal.close()
+
+    return transport, close
+
+
+_CAMERA_STREAM = 1
+_NODE_STREAM = 2
+"""Names of the streams of random numbers drawn from one seed."""

@@ -1,0 +1,90 @@
+"""start.json: what is known before the first sample."""
+
+import hashlib
+import math
+import uuid
+
+from cdpr8.provenance import versions
+from cdpr8.rigfile import Excitation, Rig
+from cdpr8.runfolder import CameraStart, ClockAnchor, Node, StartRecord
+from rig.bus import Station
+from rig.camera import Camera
+from rig.machine import Machine
+
+
+def start_record(
+    machine: Machine,
+    stations: tuple[Station, ...],
+    rig: Rig,
+    rig_text: str,
+    excitation: Excitation,
+    *,
+    rig_file: str,
+    reconstruction: str | None,
+    seed: int,
+    anchor: ClockAnchor,
+) -> StartRecord:
+    """The start record of a run.
+
+    Parameters
+    ----------
+    machine, stations
+        Opened and configured.
+    rig, rig_text, rig_file
+        The rig, its file's text and name.
+    excitation
+        The motion.
+    reconstruction
+        Said where the data are made to stand for others.
+    seed
+        Of a simulated rig.
+    anchor
+        The run's time against wall time.
+    """
+    # From the wall time, so unique; and from what repeats a run, so repeated with it.
+    name = f"{anchor.wall.isoformat()}\n{rig_text}\n{excitation}\n{seed}"
+    return StartRecord(
+        id=str(uuid.uuid5(uuid.NAMESPACE_OID, name)),
+        simulated=machine.simulated,
+        reconstruction=reconstruction,
+        rig_file=rig_file,
+        rig_sha256=hashlib.sha256(rig_text.encode("utf-8")).hexdigest(),
+        excitation=excitation,
+        motion_start_known=machine.motion_known,
+        nodes=tuple(_node(station) for station in stations),
+        camera=_camera(machine.camera, rig),
+        clock_anchor=anchor,
+        seed=seed if machine.simulated else None,
+        versions=versions(),
+    )
+
+
+def _node(station: Station) -> Node:
+    cut_off_hz = station.profile.cut_offs_hz[int(station.settings["ASF"])]
+    return Node.model_validate(
+        {
+            "cable": station.cable,
+            "address": station.address,
+            "identity": station.identity.text,
+            "settings": station.settings,
+            "profile": station.profile.name,
+            "value_bytes": station.format.length,
+            "output_period_s": station.period_s,
+            # First-order behaviour is a fair model of the filter (protocol note, section 8);
+            # stored, never applied to the times in tension.csv.
+            "filter_delay_s": 0.0 if cut_off_hz is None else 1.0 / (2.0 * math.pi * cut_off_hz),
+        }
+    )
+
+
+def _camera(camera: Camera | None, rig: Rig) -> CameraStart | None:
+    if camera is None or rig.camera is None:
+        return None
+    return CameraStart(
+        source=camera.source,
+        fps=camera.fps,
+        exposure_s=camera.exposure_s,
+        width_px=camera.width_px,
+        height_px=camera.height_px,
+        region_of_interest=rig.camera.region_of_interest,
+    )

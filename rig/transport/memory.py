@@ -1,0 +1,157 @@
+"""A line in memory: no operating system, exact byte times, on any clock.
+
+On a virtual clock the time passes that the bytes need at the line's speed, so hours of bus time
+run in seconds and a seed repeats a run to the byte. On a real clock it serves where there are no
+pseudo-terminals.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Protocol
+
+from cdpr8.clock import Clock
+from rig.transport.line import MAX_DRAIN_S, LineSettings, Received
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Bytes that follow each other on the line.
+
+    Attributes
+    ----------
+    data
+        The bytes.
+    first_s
+        When the first of them has arrived whole.
+    char_s
+        Time from one to the next.
+    damaged
+        Whether the receiver sees a parity or framing error in them.
+    """
+
+    data: bytes
+    first_s: float
+    char_s: float
+    damaged: bool = False
+
+    @property
+    def last_s(self) -> float:
+        """When the last byte has arrived whole."""
+        return self.first_s + (len(self.data) - 1) * self.char_s
+
+    def arrived(self, by_s: float) -> int:
+        """How many of the bytes have arrived by `by_s`."""
+        if self.last_s <= by_s:
+            return len(self.data)
+        if self.first_s > by_s:
+            return 0
+        return min(len(self.data), int((by_s - self.first_s) / self.char_s) + 1)
+
+    def split(self, count: int) -> tuple["Chunk", "Chunk"]:
+        """The first `count` bytes, and the rest."""
+        rest_s = self.first_s + count * self.char_s
+        return (
+            Chunk(self.data[:count], self.first_s, self.char_s, self.damaged),
+            Chunk(self.data[count:], rest_s, self.char_s, self.damaged),
+        )
+
+
+class FarEnd(Protocol):
+    """What hangs on the other end of the line."""
+
+    def hear(self, data: bytes, start_s: float) -> None:
+        """Bytes that the master starts to send at `start_s`, at the line's speed."""
+        ...
+
+    def speak(self, until_s: float) -> deque[Chunk]:
+        """The answers under way, complete up to `until_s`; the reader takes them off the left."""
+        ...
+
+
+class MemoryTransport:
+    """One end of a line in memory.
+
+    Parameters
+    ----------
+    far_end
+        What hears and answers.
+    line
+        Speed and framing.
+    clock
+        Moved (virtual) or waited on (real) while bytes travel.
+    """
+
+    def __init__(
+        self, far_end: FarEnd, line: LineSettings, clock: Clock, name: str = "memory"
+    ) -> None:
+        self._far_end = far_end
+        self._line = line
+        self._clock = clock
+        self._name = name
+
+    @property
+    def line(self) -> LineSettings:
+        """Speed and framing."""
+        return self._line
+
+    @property
+    def clock(self) -> Clock:
+        """The clock given at the start."""
+        return self._clock
+
+    @property
+    def name(self) -> str:
+        """What a user calls this line."""
+        return self._name
+
+    def write(self, data: bytes) -> None:
+        """Start to send `data` now."""
+        self._far_end.hear(data, self._clock.monotonic_s())
+
+    def read(self, count: int, deadline_s: float) -> Received:
+        """Exactly `count` bytes, or what has come by `deadline_s`."""
+        pending = self._far_end.speak(deadline_s)
+        data = b""
+        damaged = False
+        last_s = deadline_s
+        while pending and len(data) < count:
+            chunk = pending[0]
+            ready = min(chunk.arrived(deadline_s), count - len(data))
+            if ready == 0:
+                break
+            if ready < len(chunk.data):
+                chunk, pending[0] = chunk.split(ready)
+            else:
+                pending.popleft()
+            data += chunk.data
+            damaged |= chunk.damaged
+            last_s = chunk.last_s
+        self._clock.sleep_until(last_s if len(data) == count else deadline_s)
+        return Received(data, last_s, damaged)
+
+    def discard(self) -> bytes:
+        """Throw away, and return, what has come and was not read."""
+        now_s = self._clock.monotonic_s()
+        pending = self._far_end.speak(now_s)
+        data = b""
+        while pending and (ready := pending[0].arrived(now_s)):
+            if ready < len(pending[0].data):
+                chunk, pending[0] = pending[0].split(ready)
+            else:
+                chunk = pending.popleft()
+            data += chunk.data
+        return data
+
+    def drain(self, quiet_s: float) -> bytes:
+        """Throw away, and return, what comes until nothing has come for `quiet_s`."""
+        data = self.discard()
+        end_s = self._clock.monotonic_s() + MAX_DRAIN_S
+        while self._clock.monotonic_s() < end_s:
+            received = self.read(1, self._clock.monotonic_s() + quiet_s)
+            if not received.data:
+                break
+            data += received.data + self.discard()
+        return data
+
+    def close(self) -> None:
+        """Nothing to give back."""

@@ -1,0 +1,239 @@
+"""A serial port or a pseudo-terminal, through pyserial."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cdpr8.clock import Clock
+from cdpr8.errors import DeviceError
+from rig.transport.line import MAX_DRAIN_S, LineSettings, Received
+from rig.transport.parity_marks import ParityMarks
+
+if TYPE_CHECKING:
+    import serial
+
+POLL_S = 0.005
+"""How long one read of the port may block: deadlines are kept to within this."""
+
+
+class SerialTransport:
+    """A line behind pyserial.
+
+    Parameters
+    ----------
+    port
+        Open, with its timeout at `POLL_S`.
+    line
+        What the port was set to; parity may be kept by the far end only (pseudo-terminals).
+    clock
+        Stamps the bytes.
+    marks
+        Undoes the marking of parity errors, where the port marks them.
+    """
+
+    def __init__(
+        self,
+        port: "serial.Serial",
+        line: LineSettings,
+        clock: Clock,
+        marks: ParityMarks | None = None,
+    ) -> None:
+        self._port = port
+        self._line = line
+        self._clock = clock
+        self._marks = marks
+
+    @property
+    def line(self) -> LineSettings:
+        """Speed and framing."""
+        return self._line
+
+    @property
+    def clock(self) -> Clock:
+        """The clock given at the start."""
+        return self._clock
+
+    @property
+    def name(self) -> str:
+        """The device's path."""
+        return str(self._port.port)
+
+    @property
+    def marks_parity_errors(self) -> bool:
+        """Whether the operating system tells which bytes came with a parity error."""
+        return self._marks is not None
+
+    def write(self, data: bytes) -> None:
+        """Hand `data` to the operating system."""
+        try:
+            self._port.write(data)
+        except _LOST as error:
+            raise self._lost(error) from None
+
+    def read(self, count: int, deadline_s: float) -> Received:
+        """Exactly `count` bytes, or what has come by `deadline_s`."""
+        data = b""
+        damaged = False
+        while True:
+            chunk, chunk_damaged = self._take(count - len(data))
+            if chunk:
+                data += chunk
+                damaged |= chunk_damaged
+                last_s = self._clock.monotonic_s()
+                if len(data) == count:
+                    return Received(data, last_s, damaged)
+            if (now_s := self._clock.monotonic_s()) >= deadline_s:
+                return Received(data, last_s if data else now_s, damaged)
+
+    def discard(self) -> bytes:
+        """Throw away, and return, what has come and was not read."""
+        try:
+            waiting = self._port.in_waiting
+        except _LOST as error:
+            raise self._lost(error) from None
+        return self._take(waiting)[0] if waiting else b""
+
+    def drain(self, quiet_s: float) -> bytes:
+        """Throw away, and return, what comes until nothing has come for `quiet_s`."""
+        data = self.discard()
+        start_s = last_s = self._clock.monotonic_s()
+        while (now_s := self._clock.monotonic_s()) < last_s + quiet_s:
+            chunk, _ = self._take(1)
+            if chunk:
+                data += chunk + self.discard()
+                last_s = self._clock.monotonic_s()
+            if now_s > start_s + MAX_DRAIN_S:
+                break
+        return data
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()
+
+    def _take(self, count: int) -> tuple[bytes, bool]:
+        """At most `count` bytes within `POLL_S`, and whether one of them was damaged."""
+        try:
+            raw = self._port.read(count)
+        except _LOST as error:
+            raise self._lost(error) from None
+        if self._marks is None:
+            return raw, False
+        return self._marks.undo(raw)
+
+    def _lost(self, error: Exception) -> DeviceError:
+        return DeviceError(
+            f"the port is gone: {error}",
+            where=self.name,
+            remedy="check the cable and the adapter, then record again; what came is kept",
+        )
+
+
+def open_serial_port(path: str, line: LineSettings, clock: Clock) -> SerialTransport:
+    """Open a serial port or pseudo-terminal for the bus.
+
+    Parameters
+    ----------
+    path
+        A device such as ``/dev/ttyUSB0`` or ``COM3``; best ``/dev/serial/by-id/...``.
+    line
+        Speed and framing.
+    clock
+        Stamps what comes.
+
+    Raises
+    ------
+    DeviceError
+        There is no such port, it is taken, or it refuses the settings.
+    """
+    import serial
+
+    # A pseudo-terminal has no parity: the kernel drops the bit, and glibc then reports EINVAL on
+    # every second open (protocol note, pty facts). Its line speed and parity are the far end's.
+    parity = "N" if line.parity == "none" or _is_pseudo_terminal(path) else "E"
+    try:
+        port = serial.Serial(
+            path,
+            baudrate=line.baud,
+            parity=parity,
+            timeout=POLL_S,
+            write_timeout=1.0,
+            xonxoff=False,  # binary values hold 0x11 and 0x13
+            rtscts=False,
+            exclusive=True if sys.platform != "win32" else None,
+        )
+    except _LOST as error:
+        raise _not_opened(path, line, error) from None
+    _ask_for_low_latency(port)
+    marks = ParityMarks() if parity == "E" and _mark_parity_errors(port) else None
+    return SerialTransport(port, line, clock, marks)
+
+
+def serial_ports() -> tuple[str, ...]:
+    """Ports this machine has, by their lasting names where there are any."""
+    from serial.tools import list_ports
+
+    by_id = sorted(Path("/dev/serial/by-id").glob("*"))
+    lasting = {link.resolve(): str(link) for link in by_id}
+    return tuple(
+        lasting.get(Path(port.device).resolve(), port.device)
+        for port in sorted(list_ports.comports())
+    )
+
+
+def _lost_types() -> tuple[type[Exception], ...]:
+    """What an unplugged port raises; SerialException is an OSError, termios.error is not."""
+    try:
+        import termios
+    except ImportError:
+        return (OSError,)
+    return (OSError, termios.error)
+
+
+_LOST = _lost_types()
+
+
+def _is_pseudo_terminal(path: str) -> bool:
+    return str(Path(path).resolve()).startswith("/dev/pts/")
+
+
+def _ask_for_low_latency(port: "serial.Serial") -> None:
+    """Deliver bytes as they come (FTDI's default waits 16 ms); best effort, ptys refuse it."""
+    ask = getattr(port, "set_low_latency_mode", None)
+    if ask is not None:
+        try:
+            ask(True)
+        except (OSError, ValueError):
+            return
+
+
+def _mark_parity_errors(port: "serial.Serial") -> bool:
+    """Have the operating system mark bytes that came with a parity error; pyserial does not."""
+    try:
+        import termios
+    except ImportError:
+        return False
+    try:
+        attributes = termios.tcgetattr(port.fileno())
+        attributes[0] |= termios.INPCK | termios.PARMRK
+        attributes[0] &= ~termios.IGNPAR
+        termios.tcsetattr(port.fileno(), termios.TCSANOW, attributes)
+    except _LOST:
+        return False
+    return True
+
+
+def _not_opened(path: str, line: LineSettings, error: Exception) -> DeviceError:
+    ports = serial_ports()
+    code = getattr(error, "errno", None)
+    if not Path(path).exists() and sys.platform != "win32":
+        what = f"no serial port {path!r}"
+    elif code in (11, 16):
+        what = f"port {path!r} is in use by another program"
+    elif code == 13:
+        what = f"port {path!r} may not be opened by this user"
+    else:
+        what = f"port {path!r} cannot be opened at {line}: {error}"
+    remedy = "set [bus] port in the rig file, or try --simulated"
+    if code == 13:
+        remedy = "join the group that owns the device (dialout on most systems), then log in again"
+    return DeviceError(what, allowed="ports here: " + (", ".join(ports) or "none"), remedy=remedy)

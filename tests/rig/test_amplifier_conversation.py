@@ -1,0 +1,230 @@
+"""Conversations byte for byte, against the protocol note's worked exchanges (section 10)."""
+
+import pytest
+from rig_stand_ins import Conversation, simulated_line, virtual_clock, with_bus, without_noise
+
+from cdpr8.errors import DeviceError
+from cdpr8.rigfile import Rig
+from rig.amplifier.dialogue import Dialogue, NoAnswerError
+from rig.amplifier.node import NodeClient, Settings
+from rig.amplifier.probe import probe_format
+from rig.amplifier.profile import AD101B, AD104, FIT, Identity, profile_of
+from rig.bus import Bus
+from rig.simulated.node import SimulatedNode
+from rig.simulated.rig import simulated_nodes
+from rig.transport import MemoryTransport
+
+OK = b"0\r\n"
+SET_UP = [
+    (b";S01;IDN?;", b'HBM,"AD104          ","1234567",P20\r\n'),
+    (b"COF?;", b"009\r\n"),
+    (b'SPW"AED";', OK),
+    (b"NOV?;", b"0000000\r\n"),
+    (b"FMD0;", OK),
+    (b"FMD?;", b"0\r\n"),
+    (b"ASF1;", OK),
+    (b"ASF?;", b"01\r\n"),
+    (b"ICR0;", OK),
+    (b"ICR?;", b"0\r\n"),
+    (b"TAS1;", OK),
+    (b"TAS?;", b"1\r\n"),
+    (b"ZTR0;", OK),
+    (b"ZTR?;", b"0\r\n"),
+    (b"TEX172;", OK),
+    (b"TEX?;", b"172\r\n"),
+    (b"CSM0;", OK),
+    (b"CSM?;", b"0\r\n"),
+    (b"COF24;", OK),
+    (b"COF?;", b"024\r\n"),
+]
+SETTINGS = Settings(cof=24, icr=0, asf=1)
+
+
+def set_up(pairs: list[tuple[bytes, bytes]]) -> tuple[Conversation, dict[str, str]]:
+    script = Conversation(pairs)
+    node = NodeClient(Dialogue(script), 1)
+    node.identify()
+    return script, node.configure(SETTINGS)
+
+
+def test_a_node_is_set_up_as_the_note_says() -> None:
+    script, settings = set_up(SET_UP)
+    assert script.over
+    assert settings["COF"] == "024"
+    assert settings["ASF"] == "01"
+
+
+def test_a_user_scaling_is_taken_out_with_the_password() -> None:
+    pairs = list(SET_UP)
+    pairs[3:4] = [(b"NOV?;", b"0050000\r\n"), (b"NOV0;", OK), (b"NOV?;", b"0000000\r\n")]
+    script, _ = set_up(pairs)
+    assert script.over
+
+
+def test_a_refused_setting_is_told() -> None:
+    pairs = [*SET_UP[:6], (b"ASF1;", b"?\r\n")]
+    with pytest.raises(DeviceError, match=r"ASF1; was answered with \?"):
+        set_up(pairs)
+
+
+def test_a_setting_that_reads_back_wrong_is_refused() -> None:
+    pairs = [*SET_UP[:7], (b"ASF?;", b"05\r\n")]
+    with pytest.raises(DeviceError, match="ASF reads 05 after 1 was accepted"):
+        set_up(pairs)
+
+
+def test_after_silence_the_line_is_cleared_and_the_question_asked_again() -> None:
+    script = Conversation(
+        [
+            (b"IDN?;", b""),
+            (b";", b'"AD104'),  # a late answer: thrown away with the line
+            (b"IDN?;", b'HBM,"AD104          ","1234567",P20\r\n'),
+        ]
+    )
+    answer = Dialogue(script).ask(b"IDN?;")
+    assert Identity.parse(answer).serial_number == "1234567"
+    assert script.over
+    # 100 ms at least for the answer that did not come, then longer silence than any answer takes
+    assert script.clock.monotonic_s() > 0.115
+
+
+def test_a_node_that_stays_silent_is_asked_three_times() -> None:
+    script = Conversation([(b"IDN?;", b""), (b";", b"")] * 2 + [(b"IDN?;", b"")])
+    with pytest.raises(NoAnswerError, match=r"IDN\?; was not answered"):
+        Dialogue(script).ask(b"IDN?;")
+    assert script.over
+
+
+@pytest.mark.parametrize(
+    ("answer", "type_", "profile"),
+    [
+        (b'HBM,"AD104          ","1234567",P20\r\n', "AD104", AD104),
+        (b'HBM,"AD103          ","1234567",P51\r\n', "AD103", AD101B),
+        (b"HBM,FIT/5,0012345,P10\r\n", "FIT/5", FIT),
+        (b"HBM,C16iC3/40t     ,M64702 ,P52\r\n", "C16iC3/40t", FIT),
+    ],
+)
+def test_identities_are_read_leniently(answer: bytes, type_: str, profile: object) -> None:
+    identity = Identity.parse(answer)
+    assert identity.type == type_
+    assert profile_of(identity) is profile
+
+
+def test_nothing_is_assumed_of_an_unknown_type() -> None:
+    with pytest.raises(DeviceError, match="'WE2107', of which no dialect is known"):
+        profile_of(Identity.parse(b'HBM,"WE2107         ","1234567",P61\r\n'))
+    with pytest.raises(DeviceError, match="allowed: four parts"):
+        Identity.parse(b"H\x00\xff\r\n")
+
+
+@pytest.mark.parametrize("crlf", [True, False])
+def test_whether_values_carry_crlf_is_probed(rig: Rig, crlf: bool) -> None:
+    clock = virtual_clock()
+    bus, transport = simulated_line(rig, clock=clock)
+    for node in bus.nodes:
+        node._crlf_in_bus_mode = crlf
+    station = Bus(transport, rig).start()[0]
+    assert station.format.crlf is crlf
+    assert station.format.length == (6 if crlf else 4)
+
+
+def test_values_that_fit_no_format_are_refused() -> None:
+    script = Conversation([(b";", b""), *[(b"S01;", b"\x27\x10\x00")] * 16, (b";", b"")])
+    with pytest.raises(DeviceError, match="fit 0 formats of COF 24: 27 10 00"):
+        probe_format(Dialogue(script), 1, 24, 0)
+
+
+class Told:
+    """A simulated node and a line to it, for one-off questions."""
+
+    def __init__(self, nodes: tuple[SimulatedNode, ...], transport: MemoryTransport) -> None:
+        self.nodes, self.transport = nodes, transport
+
+    def __call__(self, text: bytes) -> bytes:
+        self.transport.write(text)
+        return self.transport.drain(0.05)
+
+
+@pytest.fixture
+def tell(rig: Rig) -> Told:
+    bus, transport = simulated_line(without_noise(rig))
+    tell = Told(bus.nodes, transport)
+    tell(b";S98;STP;")
+    return tell
+
+
+def test_the_simulated_node_holds_its_side_of_the_worked_exchange(tell: Told) -> None:
+    tell.nodes[0].signal._tension_at = lambda t_s: 50.0 + 0.0 * t_s  # 1 mV/V
+    for address in range(2, 9):
+        tell(b";S%02d;COF24;" % address)
+    assert tell(b";S01;IDN?;") == b'HBM,"FIT/5          ","SIM0001",P20\r\n'
+    assert tell(b"COF?;") == b"009\r\n"
+    assert tell(b"NOV5000;") == b"?\r\n"  # locked before the password
+    assert tell(b'SPW"AED";') == OK
+    for setting in (b"NOV0;", b"FMD0;", b"ASF0;", b"ICR0;", b"TAS1;", b"ZTR0;", b"TEX172;"):
+        assert tell(setting) == OK
+    assert tell(b"COF?;") == b"009\r\n"
+    assert tell(b"CSM0;COF24;") == OK + OK
+    assert tell(b"ICR9;") == b"?\r\n"
+    assert tell(b";S98;MSV?0;") == b""
+    assert tell(b"S01;") == bytes.fromhex("27 10 00 08 0D 0A")
+    assert tell(b"S09;") == b""
+    assert tell(b";S98;STP;") == b""
+    assert tell(b"S01;") == b""
+
+
+def test_a_virgin_node_is_readdressed_by_its_serial_number(tell: Told) -> None:
+    assert tell(b';S98;ADR20,"SIM0003";') == b""
+    assert tell(b";S20;IDN?;").endswith(b'"SIM0003",P20\r\n')
+    assert tell(b";S03;IDN?;") == b""
+    assert tell(b";S04;ADR?;") == b"04\r\n"
+
+
+def test_nodes_are_active_after_power_on_and_answer_all_at_once(rig: Rig) -> None:
+    _, transport = simulated_line(rig)
+    transport.write(b"ADR?;")
+    received = transport.read(4, 0.1)
+    assert received.damaged
+    transport.write(b";S98;STP;ADR?;")
+    assert transport.drain(0.1) == b""
+
+
+def test_settings_are_volatile_until_saved(tell: Told) -> None:
+    assert tell(b";S02;ASF3;ASF?;") == OK + b"03\r\n"
+    tell(b"RES;")
+    tell.transport.clock.sleep_until(10.0)
+    assert tell(b";S02;ASF?;") == b"05\r\n"
+    assert tell(b"ASF3;TDD1;") == OK + OK
+    tell(b"RES;")
+    tell.transport.clock.sleep_until(20.0)
+    assert tell(b";S02;ASF?;") == b"03\r\n"
+    assert tell(b"TDD0;ASF?;") == OK + b"05\r\n"
+
+
+def test_a_node_at_another_speed_is_not_heard(tell: Told) -> None:
+    assert tell(b";S05;BDR?;") == b"115200,1\r\n"
+    assert tell(b"BDR38400,1;") == b""  # answered at the new speed
+    assert tell(b";S05;IDN?;") == b""
+
+
+def test_commands_end_with_lf_but_a_selection_does_not(tell: Told) -> None:
+    assert tell(b";S06;ICR?\n") == b"0\r\n"
+    assert tell(b"S07\n") == b""
+    assert tell(b";ADR?;") == b"07\r\n"  # only the semicolon completed it
+
+
+def test_text_formats_and_counted_streams(tell: Told) -> None:
+    tell.nodes[0].signal._tension_at = lambda t_s: 25.0 + 0.0 * t_s
+    assert tell(b";S01;ASF0;MSV?;") == OK + b" 0250000,01,008\r\n"
+    assert tell(b"COF3;MSV?2;") == OK + b" 0250000\r\n" * 2
+    assert tell(b"COF8;MSV?;") == OK + bytes.fromhex("13 88 00 08 0D 0A")
+    assert tell(b"ESR?;") == b"000\r\n"
+    assert tell(b"XYZ1;ESR?;") == b"?\r\n032\r\n"
+
+
+def test_the_checksum_replaces_the_status_where_there_is_no_parity(rig: Rig) -> None:
+    plain = with_bus(rig, parity="none")
+    _, transport = simulated_line(plain)
+    station = Bus(transport, plain).start()[0]
+    assert station.settings["CSM"] == "1"
+    assert simulated_nodes(rig, None, 0.0, 0)[0].settings["PARITY"] == 1

@@ -1,0 +1,249 @@
+"""Recording in real time: threads, a pseudo-terminal, signals, and kill -9."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rig_stand_ins import NoisyExposer, WavePlatform, motion, rig_text, virtual_clock
+
+from cdpr8.clock import RealClock
+from cdpr8.rigfile import Rig
+from cdpr8.runfolder import EventKind, FrameFlag, Run, load_run, read_video
+from rig.recorder import record
+from rig.schedule import run_in_threads
+from rig.scribe import FRAMES_WAITING, Sample, ThreadedScribe
+from rig.simulated.rig import assemble
+from rig.stop import StopRequest
+from rig.tally import Tally
+from rig.transport import MemoryTransport
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
+
+
+def test_a_recording_over_a_pseudo_terminal(rig: Rig, tmp_path: Path) -> None:
+    clock = RealClock()
+    platform = WavePlatform(3.0, 1.0)
+    machine = assemble(rig, platform, NoisyExposer(), clock, seed=1)
+    shown: list[float] = []
+
+    def watch(tally: Tally, now_s: float) -> None:
+        shown.append(now_s)
+        raise RuntimeError("a display that dies")
+
+    recording = record(
+        rig,
+        rig_text(),
+        tmp_path / "run",
+        excitation=motion(2.5),
+        clock=clock,
+        machine=machine,
+        watch=watch,
+    )
+    run = load_run(tmp_path / "run")
+    assert run.notes == ()
+    assert recording.fault is None
+    assert run.stop.reason == "duration"
+    assert len(shown) > 5
+    assert run.stop.t_s == pytest.approx(2.5, abs=0.1)
+    assert len(run.frames) + run.stop.lost.get("frame_dropped", 0) == 40
+    for cable in range(1, 9):
+        rows = run.cable_tension(cable)
+        times = rows["t_s"].to_numpy()
+        # The bus gives 131/s; a shared computer is given room.
+        assert len(times) > 2.5 * 40
+        assert (np.diff(times) > 0).all()
+        error = rows["tension_n"].to_numpy() - platform.tension_at(cable, times)
+        assert np.median(np.abs(error)) < 0.02
+    assert {"motion_start", "motion_end", "clock_anchor"} <= set(run.events["kind"])
+
+
+def test_where_there_are_no_pseudo_terminals_the_bus_is_in_memory(
+    rig: Rig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(os, "openpty")
+    clock = RealClock()
+    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+    assert isinstance(machine.transport, MemoryTransport)
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(0.6), clock=clock, machine=machine
+    )
+    assert recording.stop.t_s == pytest.approx(0.6, abs=0.05)
+    assert min(recording.stop.samples.values()) > 0.6 * 40
+
+
+def start(folder: Path, duration_s: float) -> "subprocess.Popen[bytes]":
+    """A recording in a process of its own, once its samples are coming."""
+    script = Path(__file__).parent / "recording_process.py"
+    complaints = folder.parent / "stderr.txt"
+    with complaints.open("w") as file:
+        process = subprocess.Popen(
+            [sys.executable, str(script), str(folder), str(duration_s)], stderr=file
+        )
+    deadline = time.monotonic() + 20.0
+    tension = folder / "tension.csv"
+    while not tension.exists() or tension.stat().st_size < 20_000:
+        assert process.poll() is None, complaints.read_text()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    return process
+
+
+@pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_recording_in_order(tmp_path: Path, wish: signal.Signals) -> None:
+    process = start(tmp_path / "run", 60.0)
+    process.send_signal(wish)
+    assert process.wait(10.0) == 0
+    run = load_run(tmp_path / "run")
+    assert run.notes == ()
+    assert run.stop.reason == "interrupted"
+    assert run.stop.samples == run.tension["cable"].value_counts().sort_index().to_dict()
+    assert run.stop.frames == len(run.frames) == len(list(read_video(run.video)))
+    assert run.events["kind"].iloc[-1] == "interrupted"
+
+
+def test_two_signals_end_it_at_once_with_a_stop_record(tmp_path: Path) -> None:
+    process = start(tmp_path / "run", 60.0)
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(10.0) == 0
+    assert load_run(tmp_path / "run").stop.reason == "stopped_at_once"
+
+
+def test_a_killed_recording_loads_up_to_the_last_moments(tmp_path: Path) -> None:
+    process = start(tmp_path / "run", 60.0)
+    time.sleep(1.0)
+    expected_s = newest_s(tmp_path / "run")
+    process.kill()
+    process.wait()
+    run = load_run(tmp_path / "run")
+    assert run.stop is None
+    assert any("interrupted" in each for each in run.notes)
+    assert run.tension["t_s"].max() >= expected_s
+    assert all_true(run)
+    frames = len(list(read_video(run.video)))
+    assert 0 < frames <= len(run.frames)
+
+
+def newest_s(folder: Path) -> float:
+    """Time of the newest whole row on disk."""
+    return float((folder / "tension.csv").read_text().rsplit("\n", 2)[1].split(",")[0])
+
+
+def all_true(run: Run) -> bool:
+    error = run.tension["tension_n"] - [
+        float(WavePlatform(3.0).tension_at(cable, np.array(max(0.0, t_s))))
+        for cable, t_s in zip(run.tension["cable"], run.tension["t_s"], strict=True)
+    ]
+    return bool(error.abs().max() < 1.0 and error.abs().median() < 0.03)
+
+
+class SlowWriter:
+    """A run folder whose encoder hangs until it is let go."""
+
+    def __init__(self) -> None:
+        self.go = threading.Event()
+        self.flags: list[int] = []
+        self.rows: list[dict[str, float]] = []
+        self.kinds: list[EventKind] = []
+        self.tension = self.events = self.frames = self
+
+    def append(self, row: dict[str, float]) -> None:
+        self.rows.append(row)
+
+    def write_frame(self, image: np.ndarray, t_s: float, flags: int) -> None:
+        assert self.go.wait(10.0)
+        self.flags.append(flags)
+
+    def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None) -> None:
+        self.kinds.append(kind)
+
+    def flush(self) -> None: ...
+
+    def sync(self) -> None: ...
+
+
+def test_an_encoder_that_hangs_stalls_nothing_and_its_loss_is_counted() -> None:
+    writer, tally = SlowWriter(), Tally()
+    scribe = ThreadedScribe(writer, tally, RealClock(), hurry=lambda: False)
+    image = np.zeros((4, 4), np.uint8)
+    began = time.perf_counter()
+    for number in range(FRAMES_WAITING + 20):
+        scribe.frame(image, number / 16, 0)
+        scribe.sample(Sample(number / 100, 1, 0, 0.0, 0, 0.0, 0.0))
+    assert time.perf_counter() - began < 1.0
+    while len(writer.rows) < FRAMES_WAITING + 20:
+        time.sleep(0.01)  # rows are written while the encoder hangs
+    writer.go.set()
+    while len(writer.flags) < FRAMES_WAITING:
+        time.sleep(0.01)
+    scribe.frame(image, 9.0, 0)
+    scribe.close()
+    dropped = tally.lost["frame_dropped"]
+    assert 19 <= dropped <= 20
+    assert len(writer.flags) == tally.frames == FRAMES_WAITING + 21 - dropped
+    assert writer.flags[-1] & FrameFlag.DROPPED_BEFORE
+    assert writer.kinds == [EventKind.FRAME_DROPPED]
+
+
+def test_a_disk_that_fails_ends_the_run(rig: Rig, tmp_path: Path) -> None:
+    class FullDisk(SlowWriter):
+        def append(self, row: dict[str, float]) -> None:
+            raise OSError(28, "No space left on device")
+
+    scribe = ThreadedScribe(FullDisk(), Tally(), RealClock(), hurry=lambda: False)
+    scribe.sample(Sample(0.0, 1, 0, 0.0, 0, 0.0, 0.0))
+
+    class Endless:
+        name = "endless"
+        due_s = 0.0
+
+        def step(self) -> bool:
+            time.sleep(0.01)
+            return True
+
+    with pytest.raises(OSError, match="No space left"):
+        run_in_threads([Endless()], StopRequest(), lambda: scribe.failure, None)
+    scribe.close()
+
+
+def test_a_fault_of_one_stream_ends_the_others() -> None:
+    class Failing:
+        name, due_s = "failing", 0.0
+
+        def step(self) -> bool:
+            raise ValueError("of the stream")
+
+    class Endless:
+        name, due_s, steps = "endless", 0.0, 0
+
+        def step(self) -> bool:
+            self.steps += 1
+            time.sleep(0.005)
+            return True
+
+    endless = Endless()
+    with pytest.raises(ValueError, match="of the stream"):
+        run_in_threads([endless, Failing()], StopRequest(), lambda: None, None)
+    done = endless.steps
+    time.sleep(0.05)
+    assert endless.steps == done
+
+
+def test_frames_that_a_slow_camera_missed_are_counted(rig: Rig) -> None:
+    from rig.simulated.exposures import ExposureSequence
+
+    clock = virtual_clock()
+    camera = ExposureSequence(NoisyExposer(), clock)
+    camera.start(1.0)
+    first = camera.next_frame()
+    clock.advance(0.2)
+    second = camera.next_frame()
+    assert (first.t_mid_s, first.dropped_before) == (1.0025, 0)
+    assert second.dropped_before == 2
+    assert second.t_mid_s == pytest.approx(1.0025 + 3 / 16)
