@@ -101,6 +101,8 @@ def record_command(
     folder = out or RUNS / (name or now.astimezone().strftime("%Y-%m-%dT%H-%M-%S"))
     if machine.bus.port == SIMULATED:
         note("recording the simulated rig, no hardware: the run is marked simulated")
+        if machine.camera is not None and machine.camera.source != SIMULATED:
+            note("the camera is left out beside a simulated port; --simulated simulates both")
     elif machine.camera is not None and machine.camera.source == SIMULATED:
         note("the rig file names no real camera ([camera] source): tensions only, no video")
     note(f"recording {excitation.duration_s:g} s into {folder}; Ctrl-C ends it in order")

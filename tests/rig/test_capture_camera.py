@@ -1,7 +1,5 @@
 """Real cameras and video files behind the small interface (here: files)."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from rig_stand_ins import virtual_clock

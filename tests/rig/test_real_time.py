@@ -15,6 +15,7 @@ from rig_stand_ins import NoisyExposer, WavePlatform, motion, rig_text, virtual_
 from cdpr8.clock import RealClock
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import EventKind, FrameFlag, Run, load_run, read_video
+from rig import schedule
 from rig.recorder import record
 from rig.schedule import run_in_threads
 from rig.scribe import FRAMES_WAITING, Sample, ThreadedScribe
@@ -233,6 +234,29 @@ def test_a_fault_of_one_stream_ends_the_others() -> None:
     done = endless.steps
     time.sleep(0.05)
     assert endless.steps == done
+
+
+def test_a_camera_that_hangs_does_not_keep_the_run_from_ending(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(schedule, "HANGING_S", 0.2)
+
+    class Over:
+        name, due_s = "bus", 0.0
+
+        def step(self) -> bool:
+            return False
+
+    class Hanging:
+        name, due_s = "camera", 0.0
+
+        def step(self) -> bool:
+            time.sleep(30.0)
+            return True
+
+    began = time.perf_counter()
+    run_in_threads([Over(), Hanging()], StopRequest(), lambda: None, None)
+    assert time.perf_counter() - began < 2.0
 
 
 def test_frames_that_a_slow_camera_missed_are_counted(rig: Rig) -> None:
