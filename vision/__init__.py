@@ -1,0 +1,33 @@
+"""Video to pose: marker plates, corners, poses with their covariance, and `vision track`.
+
+Units: px, m and rad inside; degrees in tables, where the name carries the unit. The camera frame is
+OpenCV's (x right, y down, z forward), a plate's is x right, y up, z out of the print.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vision.board_file import load_board
+    from vision.camera_model import CameraModel
+    from vision.plate import Plate, Singles
+    from vision.track import track_run, track_video
+
+__all__ = ["CameraModel", "Plate", "Singles", "load_board", "track_run", "track_video"]
+
+_HOMES = {
+    "CameraModel": "vision.camera_model",
+    "Plate": "vision.plate",
+    "Singles": "vision.plate",
+    "load_board": "vision.board_file",
+    "track_run": "vision.track",
+    "track_video": "vision.track",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a door when it is used: `vision --help` must not wait for NumPy and OpenCV."""
+    from importlib import import_module
+
+    if name not in _HOMES:
+        raise AttributeError(f"module 'vision' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -123,7 +123,7 @@ def simulate_platform(
         machine.mass,
         machine.gravity,
         machine.inertia,
-        np.linalg.inv(machine.inertia),
+        np.asarray(np.linalg.inv(machine.inertia), dtype=np.float64),
         machine.base,
         machine.anchor,
         machine.rest_length,
