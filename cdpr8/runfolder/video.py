@@ -32,12 +32,12 @@ class VideoWriter:
         import av
 
         # Reproducible bytes: no random segment id, no library version in the header. Clusters of
-        # one second, flushed as written, bound what a cut can take.
+        # a quarter of a second, flushed as written, bound what a cut can take.
         self._container = av.open(
             str(path),
             "w",
             format="matroska",
-            options={"fflags": "+bitexact", "flush_packets": "1", "cluster_time_limit": "1000"},
+            options={"fflags": "+bitexact", "flush_packets": "1", "cluster_time_limit": "250"},
         )
         stream = self._container.add_stream("ffv1", rate=Fraction(fps).limit_denominator(1000))
         stream.width, stream.height, stream.pix_fmt = width, height, "gray"
