@@ -147,7 +147,7 @@ def _all_quantities(comparison: Comparison) -> "Figure":
         panel.set_title(f"{quantity.measured.name}: {quantity.relative_error:.2%}", fontsize=10)
         panel.set_xlabel("time (s)")
         panel.set_ylabel(quantity.measured.unit)
-    panels[0].legend(frameon=False, fontsize=8)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
     return figure
 
 
@@ -178,7 +178,7 @@ def _spectra(comparison: Comparison) -> "Figure":
         panel.set_title(quantity.measured.name, fontsize=10)
         panel.set_xlabel("frequency (Hz)")
         panel.set_ylabel(f"amplitude ({quantity.measured.unit})")
-    panels[0].legend(frameon=False, fontsize=8)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=3)
     return figure
 
 

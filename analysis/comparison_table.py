@@ -11,56 +11,66 @@ from cdpr8.provenance import versions
 if TYPE_CHECKING:
     from rich.table import Table
 
+LINES_SHOWN = 4
+"""Spectral lines in the table; all that were found are in the dictionary."""
+
 
 def table(comparison: Comparison) -> "Table":
     """The paper's Section 5 as a table."""
+    from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    shown = Table(title=f"{comparison.run.name}: simulated against measured", title_justify="left")
+    shown = Table(
+        title=f"{comparison.run.name}: amplitudes, simulated against measured",
+        title_justify="left",
+        box=SIMPLE_HEAD,
+    )
     shown.add_column("quantity", no_wrap=True)
     for column in (
         "simulated",
         "measured",
         "difference",
-        "relative error",
-        "noise allows",
-        "sine fit, simulated",
-        "sine fit, measured",
+        "relative\nerror",
+        "noise\nallows",
+        "sine fit,\nsimulated",
+        "sine fit,\nmeasured",
     ):
         shown.add_column(column, justify="right", no_wrap=True)
-    shown.add_row(*_row(f"{comparison.angle.measured.name} amplitude", comparison.angle))
-    first = [c for c in SHOWN_CABLES if c in comparison.tensions]
-    others = [c for c in comparison.tensions if c not in first]
-    for cable in first:
-        shown.add_row(
-            *_row(f"tension variation, cable {cable}", comparison.tensions[cable]),
-            end_section=cable == first[-1],
-        )
-    for cable in others:
-        shown.add_row(*_row(f"tension variation, cable {cable}", comparison.tensions[cable]))
+    first = _shown(comparison)
+    for quantity in first:
+        shown.add_row(*_row(quantity), end_section=quantity is first[-1])
+    for quantity in comparison.quantities:
+        if quantity not in first:
+            shown.add_row(*_row(quantity))
     return shown
 
 
 def frequency_table(comparison: Comparison) -> "Table":
-    """Frequencies: the drive's as fitted, the delay, and the lines above the noise."""
+    """Frequencies: the drive's as fitted, the delay, and the strongest lines above the noise."""
+    from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    shown = Table(title="frequencies", title_justify="left")
+    shown = Table(title="frequencies", title_justify="left", box=SIMPLE_HEAD)
     shown.add_column("quantity", no_wrap=True)
     shown.add_column("drive, measured", justify="right", no_wrap=True)
-    shown.add_column("recording lags by", justify="right", no_wrap=True)
-    shown.add_column("lines, simulated (Hz: amplitude)", overflow="fold")
-    shown.add_column("lines, measured (Hz: amplitude)", overflow="fold")
-    for quantity in comparison.quantities:
+    shown.add_column("recording\nlags by", justify="right", no_wrap=True)
+    shown.add_column("lines (Hz: amplitude)", no_wrap=True)
+    for quantity in _shown(comparison):
         sine = quantity.measured_sine
         shown.add_row(
             quantity.measured.name,
-            f"{sine.frequency_hz:.4f} ± {sine.sigma_frequency_hz:.4f} Hz",
-            f"{1e3 * quantity.delay_s:+.1f} ± {1e3 * quantity.sigma_delay_s:.1f} ms",
-            _spelled_lines(quantity.simulated_lines),
-            _spelled_lines(quantity.measured_lines),
+            f"{sine.frequency_hz:.5f} ± {sine.sigma_frequency_hz:.5f} Hz",
+            f"{1e3 * quantity.delay_s:+.2f} ± {1e3 * quantity.sigma_delay_s:.2f} ms",
+            f"simulated  {_spelled_lines(quantity.simulated_lines)}\n"
+            f"measured   {_spelled_lines(quantity.measured_lines)}",
         )
     return shown
+
+
+def _shown(comparison: Comparison) -> list[Quantity]:
+    """The angle and the cables the paper shows; where those are dead, the angle alone."""
+    cables = [comparison.tensions[c] for c in SHOWN_CABLES if c in comparison.tensions]
+    return [comparison.angle, *cables]
 
 
 def verdict(comparison: Comparison) -> str:
@@ -72,9 +82,14 @@ def verdict(comparison: Comparison) -> str:
             f"({COVERAGE:.0%} interval): simulation and recording agree."
         )
     within = [q.measured.name for q in comparison.quantities if not q.exceeds_noise]
+    if not within:
+        return (
+            f"Every difference exceeds what noise and sampling allow ({COVERAGE:.0%} interval): "
+            "the rig file's numbers, the clocks or left-out physics must answer for them."
+        )
     return (
         f"Beyond what noise and sampling allow ({COVERAGE:.0%} interval): {', '.join(beyond)}. "
-        f"Within: {', '.join(within) or 'none'}."
+        f"Within: {', '.join(within)}."
     )
 
 
@@ -100,10 +115,10 @@ def as_dictionary(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _row(name: str, quantity: Quantity) -> tuple[str, ...]:
+def _row(quantity: Quantity) -> tuple[str, ...]:
     unit = quantity.measured.unit
     return (
-        name,
+        quantity.measured.name,
         f"{quantity.simulated_amplitude:.2f} {unit}",
         f"{quantity.measured_amplitude:.2f} {unit}",
         f"{quantity.difference:+.2f} {unit}",
@@ -115,7 +130,9 @@ def _row(name: str, quantity: Quantity) -> tuple[str, ...]:
 
 
 def _spelled_lines(lines: tuple[Line, ...]) -> str:
-    return "  ".join(f"{line.frequency_hz:.2f}: {line.amplitude:.3f}" for line in lines) or "none"
+    strongest = lines[:LINES_SHOWN]
+    spelled = (f"{line.frequency_hz:.2f}: {line.amplitude:.3f}" for line in strongest)
+    return "  ".join(spelled) or "none"
 
 
 def _quantity_dictionary(quantity: Quantity) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from cdpr8 import CABLES
 from cdpr8.errors import DataError
-from cdpr8.runfolder import Run
+from cdpr8.runfolder import FrameFlag, Run
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -78,7 +78,8 @@ def measured_angle(run: Run, pose: "pd.DataFrame", axis: str) -> Series:
     DataError
         Too few frames have a pose.
     """
-    seen = pose[pose[f"{axis}_deg"].notna()]
+    repeated = (pose["flags"].to_numpy(dtype=int) & int(FrameFlag.REPEATED)) != 0
+    seen = pose[pose[f"{axis}_deg"].notna() & ~repeated]
     return _series(run, axis, "deg", seen["t_s"], seen[f"{axis}_deg"], "frames with a pose")
 
 

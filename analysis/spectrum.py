@@ -64,7 +64,8 @@ class SampleTimes:
     def _waves(self) -> NDArray[np.complex128]:
         phase = np.outer(self.frequency_hz, self.t_s - self.t_s[0])
         waves: NDArray[np.complex128] = np.exp(-2j * np.pi * phase)
-        return waves * (2.0 * self._window / self._window.sum())
+        waves *= 2.0 * self._window / self._window.sum()
+        return waves
 
     def amplitude(self, value: Array) -> Array:
         """Amplitude spectrum of a series taken at these times.

@@ -78,13 +78,13 @@ def say_json(value: Any) -> None:
 
 
 def say_table(table: "Table") -> None:
-    """A result for people; no wrapping where the output is not a terminal."""
+    """A result for people; as wide as it is: figures are never cut to fit a terminal."""
     from rich.console import Console
+    from rich.measure import Measurement
 
     console = Console()
-    if not console.is_terminal:
-        console = Console(width=160)
-    console.print(table)
+    natural = Measurement.get(console, console.options.update(max_width=1000), table).maximum
+    Console(width=max(console.width, natural)).print(table)
 
 
 @contextmanager

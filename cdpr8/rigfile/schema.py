@@ -73,6 +73,11 @@ class Bus(Section):
     port: str = "simulated"
     baud: Literal[1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200] = 115200
     parity: Literal["even", "none"] = "even"
+    checksum: bool = Field(
+        default=True,
+        description="a checksum guards each value, in the place of the amplifier's status byte; "
+        "overload is then seen from the value",
+    )
     output_format: int = Field(default=24, ge=0, le=255, description="COF of the AED protocol")
     output_rate: int = Field(default=0, ge=0, le=7, description="ICR of the AED protocol")
     filter: int = Field(default=0, ge=0, le=10, description="ASF of the AED protocol")

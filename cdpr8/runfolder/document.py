@@ -31,6 +31,7 @@ _MEANING = {
     TensionStatus.NOT_CONTIGUOUS: "the amplifier skipped values",
     TensionStatus.HOST_OVERLOAD: "beyond the host's own limit for the force cell",
     TensionStatus.STALE: "repeats an old value; not used",
+    TensionStatus.UNCONFIRMED: "a jump that a second reading did not confirm; not used",
     FrameFlag.DROPPED_BEFORE: "a frame was lost before this one",
     FrameFlag.REPEATED: "the same picture as the one before",
     FrameFlag.BLACK: "nothing to be seen",

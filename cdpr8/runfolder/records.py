@@ -24,6 +24,14 @@ class Node(Record):
     settings: dict[str, str] = Field(description="command -> answer, read back")
     zero_mv_per_v: float = Field(default=0.0, description="host-side zero")
     zero_taken: str = Field(default="never", description="when the zero was taken")
+    profile: str | None = Field(default=None, description="the dialect, chosen by the identity")
+    value_bytes: int | None = Field(default=None, description="bytes of one value on the line")
+    output_period_s: float | None = Field(
+        default=None, description="between two values inside the amplifier, nominal"
+    )
+    filter_delay_s: float | None = Field(
+        default=None, description="of the amplifier's filter; not taken off the times"
+    )
 
 
 class ClockAnchor(Record):
@@ -62,6 +70,9 @@ class StartRecord(Record):
     nodes: tuple[Node, ...] = ()
     camera: CameraStart | None = None
     clock_anchor: ClockAnchor
+    import_map: str | None = Field(
+        default=None, description="how another program's table was read, where one was"
+    )
     seed: int | None = None
     versions: dict[str, str] = Field(default_factory=dict)
 

@@ -28,6 +28,7 @@ class TensionStatus(IntFlag):
     NOT_CONTIGUOUS = 128
     HOST_OVERLOAD = 256
     STALE = 512
+    UNCONFIRMED = 1024
 
 
 BAD_TENSION = (
@@ -35,6 +36,7 @@ BAD_TENSION = (
     | TensionStatus.GROSS_OVERFLOW
     | TensionStatus.ADC_OVERFLOW
     | TensionStatus.STALE
+    | TensionStatus.UNCONFIRMED
 )
 """A sample with any of these bits is kept and never used as a measured value."""
 
@@ -66,6 +68,11 @@ class EventKind(StrEnum):
     CLOCK_ANCHOR = "clock_anchor"
     SYNC_TAP = "sync_tap"
     INTERRUPTED = "interrupted"
+    LINE_LOST = "line_lost"
+    LINE_BACK = "line_back"
+    PAUSE = "pause"
+    CLOCK_STEP = "clock_step"
+    DISK_FULL = "disk_full"
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ from model.motion import RampedSine
 
 Array = NDArray[np.float64]
 
-PULLEY_FRICTION_N = (0.3,) * CABLES
-"""Coulomb friction of the simulated rig's pulleys, cable by cable."""
+PULLEY_FRICTION_N = (0.278, 0.278, 0.352, 0.352, 0.352, 0.232, 0.232, 0.352)
+"""Coulomb friction of the simulated rig's pulleys, cable by cable: see sample_data/make_run01.py."""
 
 BRISTLE_LENGTH_M = 5e-5
 """Deflection of the bristles at which a pulley slips."""
