@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from cdpr8.terminal import entry, note, say, say_json, say_table
+from cdpr8.terminal import entry, note, progress, say, say_json, say_table
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -42,10 +42,17 @@ def compare(
     from analysis.tracking import poses_of
     from cdpr8.rigfile import load_rig
     from cdpr8.runfolder import find_run, load_run, results_folder
+    from model import compile_solver
 
     chosen = load_rig(rig) if rig is not None else None
     recorded = load_run(find_run(run))
-    comparison = compare_run(recorded, poses_of(recorded), chosen, rig_name=str(rig), seed=seed)
+    noticed: list[str] = []
+    if recorded.pose is None and recorded.video is not None:
+        note(f"{recorded.name} has no pose.csv: tracking its video")
+    with progress("tracking", len(recorded.frames)) as step:
+        poses = poses_of(recorded, noticed, step)
+    compile_solver(note)
+    comparison = compare_run(recorded, poses, chosen, rig_name=str(rig), notes=noticed, seed=seed)
     results = results_folder(recorded.folder)
     results.mkdir(parents=True, exist_ok=True)
     dictionary = as_dictionary(comparison)

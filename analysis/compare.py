@@ -1,5 +1,6 @@
 """The paper's Section 5: a run against the simulation of its own excitation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -126,6 +127,7 @@ def compare(
     rig: Rig | None = None,
     *,
     rig_name: str = "rig.toml of the run",
+    notes: Sequence[str] = (),
     seed: int = 0,
 ) -> Comparison:
     """Simulate a run's excitation and compare, by the definitions of the paper's Section 5.
@@ -141,6 +143,8 @@ def compare(
         own rig file (design, section 4).
     rig_name
         What to call `rig`.
+    notes
+        What was noticed on the way to `pose`; joins the warnings.
     seed
         Of the draws that tell what noise allows.
 
@@ -158,7 +162,7 @@ def compare(
             where=str(run.folder / "start.json"),
             remedy="compare a run that was excited",
         )
-    warnings = [*run.notes, *_warnings(run, rig)]
+    warnings = [*run.notes, *notes, *_warnings(run, rig)]
     simulation = simulate(rig or run.rig, excitation, nominal=run.rig)
     angle = measured_angle(run, pose, excitation.axis)
     cables = measured_cables(run)

@@ -1,17 +1,28 @@
 """The poses of a run: those that stand in it, or tracked now from its video."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cdpr8.errors import DataError
 from cdpr8.runfolder import Run
-from cdpr8.terminal import note
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def poses_of(run: Run) -> "pd.DataFrame":
+def poses_of(
+    run: Run, notes: list[str] | None = None, step: Callable[[], None] | None = None
+) -> "pd.DataFrame":
     """Columns of pose.csv for a run.
+
+    Parameters
+    ----------
+    run
+        The run.
+    notes
+        Takes what a user must know, where the video is tracked.
+    step
+        Called once a frame that is tracked.
 
     Raises
     ------
@@ -19,6 +30,8 @@ def poses_of(run: Run) -> "pd.DataFrame":
         The run has neither poses nor a video.
     """
     if run.pose is not None:
+        if notes is not None and len(run.pose) < len(run.frames):
+            notes.append(f"pose.csv covers {len(run.pose)} of {len(run.frames)} frames")
         return run.pose
     if run.video is None:
         raise DataError(
@@ -28,5 +41,4 @@ def poses_of(run: Run) -> "pd.DataFrame":
         )
     from vision import track_run
 
-    note(f"{run.name} has no pose.csv: tracking its video")
-    return track_run(run)
+    return track_run(run, notes=notes, step=step)

@@ -112,7 +112,7 @@ def read_video(path: Path) -> Iterator[tuple[Image, float | None]]:
 
 def _not_a_video(path: Path, reason: object) -> DataError:
     return DataError(
-        f"is not a video that can be read: {reason}",
+        f"is not a video that can be read: {getattr(reason, 'strerror', None) or reason}",
         where=str(path),
         allowed="any video that FFmpeg decodes, with at least one whole frame",
         remedy="check the file name; a recording cut short stays readable up to its last cluster",
