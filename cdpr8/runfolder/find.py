@@ -3,13 +3,12 @@
 import os
 from pathlib import Path
 
-import sample_data
 from cdpr8.errors import DataError
 
 
 def sample_data_folder() -> Path:
-    """The packaged sample runs."""
-    return Path(sample_data.__path__[0])
+    """The packaged sample runs: the folder beside the packages, installed or checked out."""
+    return Path(__file__).resolve().parents[2] / "sample_data"
 
 
 def find_run(name: str) -> Path:

@@ -162,6 +162,7 @@ POSE = Table(
         Column("reproj_px", "number", "rms reprojection error", "px", True, 4),
         Column("ratio", "number", "second-best over best reprojection error", "", True, 3),
         Column("flags", "integer", "frame flag bits, see below"),
+        Column("blur_px", "number", "standard deviation of the point spread", "px", True, 3),
     ),
 )
 
