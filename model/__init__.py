@@ -1,4 +1,4 @@
-"""The model: the paper's Eqs. 1 to 18, solved.
+"""The model: the paper's Eqs. 1 to 18, solved, and the physics it leaves out.
 
 SI units and radians inside; degrees where a name says so. Cables are numbered 1 to 8, and arrays
 hold cable ``i`` at index ``i - 1``.
@@ -7,21 +7,45 @@ hold cable ``i`` at index ``i - 1``.
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from model.batch import jacobian as jacobian
+    from model.batch import simulate_many as simulate_many
     from model.compiled import compile_solver as compile_solver
+    from model.library.selection import ActiveEffect as ActiveEffect
     from model.machine import Machine as Machine
+    from model.observation import Observation as Observation
+    from model.observation import observe as observe
     from model.simulation import Simulation as Simulation
-    from model.simulator import Disturbance as Disturbance
     from model.simulator import simulate as simulate
+    from model.task import Disturbance as Disturbance
+    from model.task import Task as Task
 
 _DOORS = {
-    "Disturbance": "model.simulator",
+    "ActiveEffect": "model.library.selection",
+    "Disturbance": "model.task",
     "Machine": "model.machine",
+    "Observation": "model.observation",
     "Simulation": "model.simulation",
+    "Task": "model.task",
     "compile_solver": "model.compiled",
+    "jacobian": "model.batch",
+    "observe": "model.observation",
     "simulate": "model.simulator",
+    "simulate_many": "model.batch",
 }
 
-__all__ = ["Disturbance", "Machine", "Simulation", "compile_solver", "simulate"]
+__all__ = [
+    "ActiveEffect",
+    "Disturbance",
+    "Machine",
+    "Observation",
+    "Simulation",
+    "Task",
+    "compile_solver",
+    "jacobian",
+    "observe",
+    "simulate",
+    "simulate_many",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -7,14 +7,16 @@ from numpy.typing import NDArray
 
 from cdpr8.rigfile.schema import Excitation, Rig
 from model.compiled import Announce
+from model.extras import pack
 from model.kernel import STATES
 from model.machine import Machine
 from model.method import find_method
 from model.motion import RampedSine
 from model.outputs import cable_states, mechanical_energy
 from model.simulation import Simulation
-from model.simulator import default_step_s, simulate
+from model.simulator import simulate
 from model.steps import divide
+from model.task import Task
 from model.trajectory import integrate
 
 Array = NDArray[np.float64]
@@ -122,7 +124,8 @@ def free_energy(
         ramp_s=0.0,
         duration_s=FREE_DURATION_S,
     )
-    steps = divide(motion, 1000.0, default_step_s(machine, scheme) if step_s is None else step_s)
+    longest_step_s = Task(rig, effects=()).step_s(scheme) if step_s is None else step_s
+    steps = divide(motion, 1000.0, longest_step_s, join=scheme.inside)
     released = np.zeros(STATES)
     released[:6] = _taut_release(machine)
     trajectory = integrate(
@@ -132,6 +135,7 @@ def free_energy(
         np.zeros((steps.step_s.size, scheme.nodes.size, 6)),
         released,
         np.zeros(STATES),
+        pack(machine, ()),
         announce,
     )
     pose, rate = trajectory.states[:, :6], trajectory.states[:, 6:12]

@@ -7,10 +7,15 @@ import typer
 
 from cdpr8 import terminal
 from cdpr8.errors import CheckError, UsageError
+from model.reconstruct.command import reconstruct
+from model.sweep.command import sweep
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from cdpr8.rigfile import Excitation
     from model.check import Check
+    from model.motion import Motion
     from model.simulation import Simulation
     from model.summary import Summary
 
@@ -30,6 +35,8 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
 )
+app.command()(sweep)
+app.command()(reconstruct)
 main = terminal.entry(app)
 
 
@@ -78,6 +85,26 @@ def simulate(
         float | None, typer.Option(help="Longest step, s; default: what the machine needs.")
     ] = None,
     rate: Annotated[float, typer.Option(help="Output rate, Hz.")] = 1000.0,
+    drive: Annotated[
+        Literal["wrench", "winch"] | None,
+        typer.Option(help="What drives the platform; default: the rig file's."),
+    ] = None,
+    effects: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--with",
+            help="Switch on a left-out effect (see `model effects`), as in "
+            "pulley_coulomb:coulomb_n=0.3@1,2; repeat for more. Adds to the rig file's.",
+        ),
+    ] = None,
+    follow: Annotated[
+        str | None,
+        typer.Option(
+            help="Any other motion in place of the sine, as in multisine:yaw=1,base=0.5,highest=5; "
+            "sine, multisine, steps, decay or csv:FILE, along x, y, z (m), roll, pitch, yaw (deg).",
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of the random phases of a multisine.")] = 0,
     out: Annotated[Path | None, typer.Option(help="Write the series to this file (.csv).")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     check: Annotated[
@@ -109,6 +136,9 @@ def simulate(
         "excitation_effect": excitation_effect,
         "method": method,
         "output_rate_hz": rate,
+        "drive": drive,
+        "effects": _effects(machine.physics, effects or []),
+        "motion": _motion(follow, seed),
     }
     simulation = solve(machine, excitation, **how, step_s=step, announce=terminal.note)
     checks: tuple[Check, ...] = ()
@@ -123,9 +153,11 @@ def simulate(
         simulation.to_frame().to_csv(out, index=False, float_format="%.10g")
     summary = summarise(simulation)
     if as_json:
-        _say_json(simulation, summary, checks, out)
+        _say_json(simulation, summary, checks, out, follow)
     else:
-        _say_table(machine.name, excitation, simulation, summary)
+        spoken = f"{excitation.axis} {excitation.amplitude_deg:g} deg at "
+        spoken += f"{excitation.frequency_hz:g} Hz"
+        _say_table(machine.name, follow or spoken, simulation, summary)
         for one in checks:
             terminal.say(one.sentence())
         if out is not None:
@@ -138,6 +170,47 @@ def simulate(
         )
 
 
+@app.command("effects")
+def list_effects(
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="Print the page docs/effects.md.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """List the left-out effects: equations, parameters, plausible ranges.
+
+    Example: model effects
+    """
+    from model.library import document
+    from model.library.discovery import library
+
+    if as_json:
+        terminal.say_json({"effects": document.as_json()})
+        return
+    if markdown:
+        terminal.say(document.markdown())
+        return
+    from rich.table import Table
+
+    table = Table("effect", "acts on", "equation", "parameters (default; plausible range)")
+    for effect in library().values():
+        numbers = (
+            f"{one.name} = {one.default:g} {one.unit} ({one.low:g} to {one.high:g})"
+            for one in effect.parameters
+        )
+        table.add_row(effect.name, effect.acts.value, effect.equation, "\n".join(numbers))
+    terminal.say_table(table)
+
+
+def _effects(physics: "Mapping[str, Mapping[str, object]]", asked: list[str]) -> list[Any]:
+    """Those of the rig file, and those asked for in their place or beside them."""
+    from model.library.selection import ActiveEffect, of_rig
+
+    named = {one.name: one for one in of_rig(physics)}
+    named |= {one.name: one for one in map(ActiveEffect.from_text, asked)}
+    return list(named.values())
+
+
 def _check_writable(out: Path) -> None:
     """Refuse early what would fail after the work."""
     if out.suffix.lower() != ".csv":
@@ -146,6 +219,18 @@ def _check_writable(out: Path) -> None:
         raise UsageError(
             f"no folder {str(out.parent)!r} for --out", remedy=f"mkdir -p {out.parent}"
         )
+
+
+def _motion(words: str | None, seed: int) -> "Motion | None":
+    """The motion asked for in words, where there is one."""
+    if words is None:
+        return None
+    import numpy as np
+
+    from model.motions import motion_of
+
+    motion: Motion = motion_of(words, np.random.default_rng(seed))
+    return motion
 
 
 def _excitation(default: "Excitation", paper: bool, changes: dict[str, object]) -> "Excitation":
@@ -173,7 +258,7 @@ def _excitation(default: "Excitation", paper: bool, changes: dict[str, object]) 
 
 def _say_table(
     rig_name: str,
-    excitation: "Excitation",
+    motion: str,
     simulation: "Simulation",
     summary: "Summary | None",
 ) -> None:
@@ -181,8 +266,7 @@ def _say_table(
 
     first, last = simulation.steady_window_s
     terminal.say(
-        f"{rig_name}: {excitation.axis} {excitation.amplitude_deg:g} deg at "
-        f"{excitation.frequency_hz:g} Hz; amplitudes over {first:g} to {last:g} s; "
+        f"{rig_name}: {motion}; amplitudes over {first:g} to {last:g} s; "
         f"{simulation.stats.method}, {simulation.stats.steps} steps"
     )
     if summary is not None:
@@ -212,6 +296,7 @@ def _say_json(
     summary: "Summary | None",
     checks: "tuple[Check, ...]",
     out: Path | None,
+    follow: str | None,
 ) -> None:
     from dataclasses import asdict
 
@@ -223,6 +308,7 @@ def _say_json(
             "checks": [asdict(one) | {"passed": one.passed} for one in checks],
             "stats": asdict(simulation.stats),
             "provenance": dict(simulation.provenance),
+            "follow": follow,
             "written": str(out) if out else None,
         }
     )

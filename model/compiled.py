@@ -20,6 +20,19 @@ Announce = Callable[[str], None]
 
 COMPILING = "compiling the solver (once)..."
 
+FAST = {"reassoc", "nsz", "arcp", "contract", "afn"}
+"""What the lane kernel may do to arithmetic. Not "nnan" nor "ninf": a NaN must stay one."""
+
+
+INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
+"""Small next to their many arguments: a call would cost more than the work."""
+
+SCALAR = ("integrate", "observe", "drive_wrench")
+"""Functions of `model.kernel` that Python calls; all others are compiled into them."""
+
+LANE = ("integrate_lanes", "observe_lanes")
+"""Functions of `model.lanes` that Python calls."""
+
 
 def compile_solver(announce: Announce | None = None) -> None:
     """Compile the kernel, or load it from the cache: for a command to call before long work.
@@ -40,16 +53,43 @@ def integrator(announce: Announce | None = None) -> Any:
     announce
         As for `compile_solver`.
     """
-    if announce is not None and not _is_cached():
+    if announce is not None and not _is_cached("kernel.integrate"):
         announce(COMPILING)
-    return _integrator()
+    return compiled("integrate")
+
+
+def lane_integrator(announce: Announce | None = None) -> Any:
+    """`model.lanes.integrate_lanes`, compiled.
+
+    Parameters
+    ----------
+    announce
+        As for `compile_solver`.
+    """
+    if announce is not None and not _is_cached("lanes.integrate"):
+        announce(COMPILING)
+    return compiled("integrate_lanes")
 
 
 def _kernel_modules() -> tuple[ModuleType, ...]:
     """Modules whose functions are compiled; any of their functions may be called in the kernel."""
-    from model import cable, kernel, kinematics, platform
+    from model import cable, kernel, kinematics, lanes, platform
+    from model.library import assembled, context, smooth
+    from model.library import lanes as layout
+    from model.library.discovery import effect_modules
 
-    return kinematics, cable, platform, kernel
+    return (
+        kinematics,
+        cable,
+        platform,
+        smooth,
+        context,
+        layout,
+        *effect_modules(),
+        assembled,
+        kernel,
+        lanes,
+    )
 
 
 def fingerprint() -> str:
@@ -58,8 +98,10 @@ def fingerprint() -> str:
     import numba
     import numpy as np
 
+    from model.library import assembled
+
     parts = [numba.__version__, llvmlite.__version__, np.__version__, computer.python_version()]
-    parts += [computer.machine(), _processor()]
+    parts += [computer.machine(), _processor(), assembled.TEXT, Path(__file__).read_text()]
     parts += [Path(str(module.__file__)).read_text() for module in _kernel_modules()]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 
@@ -84,29 +126,46 @@ def cache_folder() -> Path | None:
     return folder
 
 
-def _is_cached() -> bool:
+def _is_cached(name: str) -> bool:
     folder = cache_folder()
-    return folder is not None and any(folder.rglob("*.nbc"))
+    return folder is not None and any(folder.rglob(f"{name}*.nbc"))
 
 
 @cache
-def _integrator() -> Any:
+def compiled(name: str) -> Any:
+    """A function of `SCALAR` or `LANE`, compiled, or loaded from the cache, at its first call."""
     import numba
-    from numba.extending import register_jitable
 
-    from model import kernel
+    from model import kernel, lanes
 
-    whole = kernel.integrate
-    options = {"error_model": "numpy"}
-    for module in _kernel_modules():
-        for law in vars(module).values():
-            # Each where it is defined, once: modules also hold what they import from each other.
-            if isfunction(law) and law.__module__ == module.__name__ and law is not whole:
-                register_jitable(**options)(law)
+    module: ModuleType = kernel if name in SCALAR else lanes
+    options: dict[str, Any] = {"error_model": "numpy"}
+    if name in LANE:
+        options["fastmath"] = FAST
+    _compile_laws()
     folder = cache_folder()
     before = numba.config.CACHE_DIR
     try:
         numba.config.CACHE_DIR = str(folder or "")
+        whole = getattr(module, name)
         return numba.njit(cache=folder is not None, nogil=True, **options)(whole)
     finally:
         numba.config.CACHE_DIR = before
+
+
+@cache
+def _compile_laws() -> None:
+    """Let the kernel call every function of its modules but those that Python calls."""
+    from numba.extending import register_jitable
+
+    for module in _kernel_modules():
+        fast = {"fastmath": FAST} if module.__name__ == "model.lanes" else {}
+        for law in vars(module).values():
+            # Each where it is defined, once: modules also hold what they import from each other.
+            if (
+                isfunction(law)
+                and law.__module__ == module.__name__
+                and law.__name__ not in SCALAR + LANE
+            ):
+                inline = {"forceinline": True} if law.__name__ in INLINE else {}
+                register_jitable(error_model="numpy", **fast, **inline)(law)

@@ -1,14 +1,19 @@
-"""The ideal drive, ``drive = "wrench"`` (design, section 4).
+"""What drives the platform along X* (design, section 4): an ideal wrench, or winches.
 
-The wrench that makes the nominal platform (elastic cables T_0 + k Delta L, no cable vibration)
-follow X*. It is tabulated once, at every stage of every step, and frozen: initial disturbances,
-cable vibration and whatever the plant has beyond the nominal machine make the platform deviate.
+``drive = "wrench"`` is the wrench that makes the nominal platform (elastic cables
+T_0 + k Delta L, no cable vibration) follow X*. ``drive = "winch"`` pays out the length each cable
+has on X*. Either is tabulated once, at every stage of every step, and frozen: initial
+disturbances, cable vibration and whatever the plant has beyond the nominal machine make the
+platform deviate.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdpr8 import CABLES
 from model.cable import tension
+from model.compiled import compiled
+from model.kernel import WRENCH
 from model.kinematics import (
     add,
     cable_line,
@@ -21,6 +26,7 @@ from model.kinematics import (
 )
 from model.machine import Machine
 from model.motion import Motion
+from model.outputs import cable_states
 from model.platform import required_wrench
 
 Array = NDArray[np.float64]
@@ -71,7 +77,14 @@ def required_drive(machine: Machine, pose: Array, rate: Array, acceleration: Arr
     return np.stack(np.broadcast_arrays(*force, *moment), axis=-1)
 
 
-def wrench_table(machine: Machine, motion: Motion, time_s: Array, within_s: Array) -> Array:
+def drive_columns(kind: str) -> int:
+    """How many numbers a row of a drive's table has."""
+    return WRENCH if kind == "wrench" else WRENCH + 2 * CABLES
+
+
+def drive_table(
+    machine: Machine, motion: Motion, time_s: Array, within_s: Array, kind: str = "wrench"
+) -> Array:
     """The frozen drive.
 
     Parameters
@@ -84,18 +97,40 @@ def wrench_table(machine: Machine, motion: Motion, time_s: Array, within_s: Arra
         Times of the stages, shape (n, stages).
     within_s
         A time inside each step, shape (n, 1): says which side of a break is meant.
+    kind
+        "wrench" or "winch".
 
     Returns
     -------
     Array
-        Force and moment about the centre of mass in O-XYZ, shape (n, stages, 6); N and N m.
+        Shape (n, stages, 6): force and moment about the centre of mass in O-XYZ, N and N m. With
+        winches shape (n, stages, 22): then follow the lengths paid out, m, and their rates, m/s.
     """
-    table = np.empty((*time_s.shape, 6))
+    table = np.empty((*time_s.shape, drive_columns(kind)))
     rows = max(1, CHUNK_TIMES // time_s.shape[1])
     for first in range(0, len(time_s), rows):
         part = slice(first, first + rows)
         command = motion.at(time_s[part], within_s[part])
-        pose, rate, acceleration = (values.reshape(-1, 6) for values in command)
-        wrench = required_drive(machine, pose, rate, acceleration)
-        table[part] = wrench.reshape(table[part].shape)
+        flat = [np.ascontiguousarray(values.reshape(-1, 6)) for values in command]
+        fill = _pay_out if kind == "winch" else _push
+        table[part] = fill(machine, *flat).reshape(table[part].shape)
     return table
+
+
+def _push(machine: Machine, pose: Array, rate: Array, acceleration: Array) -> Array:
+    """`required_drive`, compiled."""
+    wrench = np.empty_like(pose)
+    compiled("drive_wrench")(pose, rate, acceleration, machine.plant(), wrench)
+    return wrench
+
+
+def _pay_out(machine: Machine, pose: Array, rate: Array, _: Array) -> Array:
+    """Lengths of the cables on X*, over those at rest, and their rates.
+
+    What the rig file leaves of static equilibrium is held by a constant wrench, so that rest is
+    still: a machine that hangs on its cables has none.
+    """
+    still = np.zeros((1, 6))
+    wrench = np.repeat(required_drive(machine, still, still, still), len(pose), axis=0)
+    on_course = cable_states(machine, pose, rate, np.zeros((len(pose), machine.cables)))
+    return np.hstack([wrench, on_course.elongation_m, on_course.axial_velocity_m_per_s])

@@ -3,7 +3,7 @@
 This is plain Python: it runs as it stands (slowly), and reads nothing but its arguments. All that
 can be configured comes in as an argument, because numba freezes module globals when it compiles.
 
-The state is one flat vector, and its layout is fixed:
+The state is one flat vector:
 
 =========  ==================================================  ==============
 index      what                                                unit
@@ -14,8 +14,11 @@ index      what                                                unit
 9 to 11    phi', theta', psi'                                  rad/s
 12 to 19   X_w, mid-span amplitudes of the cables              m
 20 to 27   X_w'                                                m/s
-28 on      states of left-out effects (none yet)               their own
+28 on      states of the left-out effects that are on          their own
 =========  ==================================================  ==============
+
+The drive is a row of numbers: force and moment about the centre of mass in O-XYZ and, where
+winches drive, the lengths they have paid out and the rates of these, cable by cable.
 """
 
 from typing import Any, NamedTuple
@@ -25,6 +28,8 @@ from numpy.typing import NDArray
 
 from model.cable import tension, transverse_acceleration
 from model.kinematics import (
+    Matrix,
+    Vector,
     add,
     angular_velocity,
     cable_line,
@@ -32,15 +37,18 @@ from model.kinematics import (
     length_rate,
     rotation,
     scale,
+    subtract,
     transform,
     trigonometry,
 )
-from model.platform import acceleration
+from model.library.assembled import RATED, cable_pull, cable_rates, platform_wrench
+from model.platform import acceleration, required_wrench
 
 Array = NDArray[np.float64]
 
 PLATFORM_STATES = 12
 STATES = 28
+WRENCH = 6
 
 
 class Plant(NamedTuple):
@@ -59,27 +67,138 @@ class Plant(NamedTuple):
     damping: Array
 
 
-def derivative(state: Array, drive: Array, plant: Any, rate: Array) -> int:
+class Extras(NamedTuple):
+    """The left-out effects that are on, as the kernel reads them.
+
+    Parameters
+    ----------
+    on
+        Which effects act on a cable, a bit for each in the order of the library, shape (8,);
+        those of the platform stand with cable 1.
+    offset
+        Index of an effect's first state, shape (effects,).
+    carrier
+        The cable that carries the states a cable shares with the others of its post, shape (8,).
+    numbers
+        Numbers of each cable and parameters of all effects, shape (8, any), laid out as
+        `model.library.lanes` says.
+    """
+
+    on: NDArray[np.int64]
+    offset: NDArray[np.int64]
+    carrier: NDArray[np.int64]
+    numbers: Array
+
+
+class Cable(NamedTuple):
+    """One cable at one moment, as the laws of `model.effects` see it; SI units.
+
+    Parameters
+    ----------
+    arm, direction
+        r_i and u_i, in O-XYZ.
+    length, elongation, elongation_rate
+        L_i; Delta L_i of Eq. 14, less what a winch has paid out, and its rate.
+    axial_velocity
+        v_yi = dL_i/dt: how fast the cable runs over its pulley.
+    anchor_velocity
+        Of the anchor, in O-XYZ.
+    elastic
+        T_i of Eq. 16.
+    pull
+        The tension at the anchor, with all effects.
+    behind
+        The part of it that a cell behind the pulley does not see.
+    """
+
+    arm: Vector
+    direction: Vector
+    length: float
+    elongation: float
+    elongation_rate: float
+    axial_velocity: float
+    anchor_velocity: Vector
+    elastic: float
+    pull: float
+    behind: float
+
+
+def cable(
+    i: int,
+    state: Array,
+    drive: Array,
+    turn: Matrix,
+    velocity: Vector,
+    omega: Vector,
+    plant: Any,
+    extras: Any,
+) -> Cable:
+    """Eqs. 9 to 16 for cable i, and what left-out effects add to its tension."""
+    cables = plant.stiffness.size
+    position = (state[0], state[1], state[2])
+    base = (plant.base[i, 0], plant.base[i, 1], plant.base[i, 2])
+    arm = transform(turn, (plant.anchor[i, 0], plant.anchor[i, 1], plant.anchor[i, 2]))
+    length, direction = cable_line(base, position, arm)
+    axial_velocity = length_rate(direction, arm, velocity, omega)
+    elongation, elongation_rate = length - plant.rest_length[i], axial_velocity
+    if drive.size > WRENCH:
+        elongation -= drive[WRENCH + i]
+        elongation_rate -= drive[WRENCH + cables + i]
+    elastic = tension(
+        plant.pretension[i],
+        plant.stiffness[i],
+        elongation,
+        state[PLATFORM_STATES + i],
+        length,
+    )
+    anchor_velocity = add(velocity, cross(omega, arm))
+    line = Cable(
+        arm,
+        direction,
+        length,
+        elongation,
+        elongation_rate,
+        axial_velocity,
+        anchor_velocity,
+        elastic,
+        elastic,
+        0.0,
+    )
+    if extras is None:
+        return line
+    on = extras.on[i]
+    if on == 0:
+        return line
+    added, behind = cable_pull(i, on, line, state, extras.offset, extras.carrier, extras.numbers)
+    return Cable(
+        arm,
+        direction,
+        length,
+        elongation,
+        elongation_rate,
+        axial_velocity,
+        anchor_velocity,
+        elastic,
+        max(elastic + added, 0.0),
+        behind,
+    )
+
+
+def derivative(state: Array, drive: Array, plant: Any, extras: Any, rate: Array) -> None:
     """The right-hand side of Eq. 18.
 
     Parameters
     ----------
     state
-        Shape (28,), laid out as above.
+        Laid out as above, shape (s,).
     drive
-        The drive's force and moment about the centre of mass in O-XYZ, shape (6,); N and N m.
-    plant
-        A `Plant`.
+        Shape (6,), or (22,) where winches drive; N, N m, m and m/s.
+    plant, extras
+        A `Plant` and an `Extras`.
     rate
-        Filled with the derivative of `state`, shape (28,).
-
-    Returns
-    -------
-    int
-        Index of a slack cable, -1 where all are taut.
+        Filled with the derivative of `state`, shape (s,).
     """
     cables = plant.stiffness.size
-    position = (state[0], state[1], state[2])
     angles = trigonometry((state[3], state[4], state[5]))
     velocity = (state[6], state[7], state[8])
     rates = (state[9], state[10], state[11])
@@ -88,35 +207,32 @@ def derivative(state: Array, drive: Array, plant: Any, rate: Array) -> int:
 
     force = (drive[0], drive[1], drive[2] - plant.mass * plant.gravity)
     moment = (drive[3], drive[4], drive[5])
-    slack = -1
+    for k in range(STATES, state.size):
+        rate[k] = 0.0
     for i in range(cables):
-        base = (plant.base[i, 0], plant.base[i, 1], plant.base[i, 2])
-        arm = transform(turn, (plant.anchor[i, 0], plant.anchor[i, 1], plant.anchor[i, 2]))
-        length, direction = cable_line(base, position, arm)
-        axial_velocity = length_rate(direction, arm, velocity, omega)
-        mid_span = state[PLATFORM_STATES + i]
+        line = cable(i, state, drive, turn, velocity, omega, plant, extras)
+        force = add(force, scale(line.pull, line.direction))
+        moment = add(moment, scale(line.pull, cross(line.arm, line.direction)))
         mid_span_rate = state[PLATFORM_STATES + cables + i]
-        pull = tension(
-            plant.pretension[i],
-            plant.stiffness[i],
-            length - plant.rest_length[i],
-            mid_span,
-            length,
-        )
-        if pull <= 0.0:
-            slack = i
-        force = add(force, scale(pull, direction))
-        moment = add(moment, scale(pull, cross(arm, direction)))
         rate[PLATFORM_STATES + i] = mid_span_rate
         rate[PLATFORM_STATES + cables + i] = transverse_acceleration(
-            mid_span,
+            state[PLATFORM_STATES + i],
             mid_span_rate,
-            pull,
-            axial_velocity,
-            length,
+            line.pull,
+            line.axial_velocity,
+            line.length,
             plant.line_density[i],
             plant.damping[i],
         )
+        if extras is not None:
+            on = extras.on[i]
+            if on & RATED != 0:
+                cable_rates(i, on, line, state, extras.offset, extras.carrier, extras.numbers, rate)
+    if extras is not None:
+        added_force, added_moment = platform_wrench(
+            extras.on[0], state, velocity, omega, extras.offset, extras.numbers
+        )
+        force, moment = add(force, added_force), add(moment, added_moment)
 
     linear, angular = acceleration(
         plant.mass, plant.inertia, plant.inverse_inertia, angles, rates, force, moment
@@ -126,7 +242,6 @@ def derivative(state: Array, drive: Array, plant: Any, rate: Array) -> int:
         rate[3 + axis] = rates[axis]
         rate[6 + axis] = linear[axis]
         rate[9 + axis] = angular[axis]
-    return slack
 
 
 def advance(
@@ -142,44 +257,42 @@ def advance(
                 result[k] += factor * rates[stage, k]
 
 
-def step(
+def evaluate(
     state: Array,
     step_s: float,
     drive: Array,
     stage_weights: Array,
-    step_weights: Array,
+    first: int,
+    last: int,
     plant: Any,
+    extras: Any,
     rates: Array,
     trial: Array,
-) -> int:
-    """One step of an explicit Runge-Kutta method, in place.
+) -> None:
+    """Stages `first` to `last` of one step of an explicit Runge-Kutta method.
 
     Parameters
     ----------
     state
-        Shape (s,), moved on by the step.
+        At the start of the step, shape (s,).
     step_s
         Length of the step, s.
     drive
-        The drive's wrench at each stage, shape (stages, 6); N and N m.
-    stage_weights, step_weights
-        The method: a_ij, shape (stages, stages), and b_i, shape (stages,).
-    plant
-        A `Plant`.
-    rates, trial
-        Room to work in, shapes (stages, s) and (s,).
-
-    Returns
-    -------
-    int
-        Index of a cable that is slack at the start of the step, -1 where all are taut.
+        The drive at each stage, shape (stages, 6 or 22).
+    stage_weights
+        a_ij, shape (stages, stages).
+    first, last
+        Stages from `first` up to, not including, `last`.
+    plant, extras
+        A `Plant` and an `Extras`.
+    rates
+        Filled, shape (stages, s).
+    trial
+        Room to work in, shape (s,).
     """
-    slack = derivative(state, drive[0], plant, rates[0])
-    for stage in range(1, step_weights.size):
+    for stage in range(first, last):
         advance(state, step_s, stage_weights[stage], rates, stage, trial)
-        derivative(trial, drive[stage], plant, rates[stage])
-    advance(state, step_s, step_weights, rates, step_weights.size, state)
-    return slack
+        derivative(trial, drive[stage], plant, extras, rates[stage])
 
 
 def first_beyond(state: Array, limit: Array) -> int:
@@ -196,13 +309,16 @@ def integrate(
     drive: Array,
     jump_point: int,
     jump: Array,
-    row_of_point: NDArray[np.int64],
+    first_row: NDArray[np.int64],
+    inside: NDArray[np.int64],
+    inside_weights: Array,
     limit: Array,
     stage_weights: Array,
     step_weights: Array,
     plant: Any,
+    extras: Any,
     trajectory: Array,
-) -> tuple[int, int, int, int, int]:
+) -> tuple[int, int]:
     """Integrate Eq. 18 by an explicit Runge-Kutta method over given steps.
 
     Points are the ends of the steps: point n is the start of step n.
@@ -214,45 +330,133 @@ def integrate(
     step_s
         Length of each step, shape (n,), in s.
     drive
-        The drive's wrench at every stage of every step, shape (n, stages, 6); N and N m.
+        The drive at every stage of every step, shape (n, stages, 6 or 22).
     jump_point, jump
         At this point `jump`, shape (s,), is added to the state.
-    row_of_point
-        Row of `trajectory` a point is stored in, -1 for none; shape (n + 1,).
+    first_row
+        Rows of `trajectory` from ``first_row[p]`` to ``first_row[p + 1]`` lie in the step from
+        point p, shape (n + 2,).
+    inside
+        Which row of `inside_weights` gives a row of the trajectory, -1 where it is the state at
+        the point itself, shape (rows,).
+    inside_weights
+        Weights of the stages for values inside a step, shape (any, stages).
     limit
         Magnitude beyond which a state is a blow-up, shape (s,).
     stage_weights, step_weights
-        The method: a_ij, shape (stages, stages), and b_i, shape (stages,).
-    plant
-        A `Plant`.
+        The method: a_ij, shape (stages, stages), and b_i, shape (m,), m <= stages.
+    plant, extras
+        A `Plant` and an `Extras`.
     trajectory
         Filled with states, shape (rows, s).
 
     Returns
     -------
-    points, culprit, slack_point, slack_cable, slack_points
-        Points reached; index of the state that blew up, or -1; the first point with a slack
-        cable, that cable (-1 for none), and how many points had one.
+    points, culprit
+        Points reached, and the index of the state that blew up, or -1.
     """
-    rates = np.empty((step_weights.size, state.size))
+    stages, needed = step_weights.size, stage_weights.shape[0]
+    rates = np.empty((needed, state.size))
     trial = np.empty(state.size)
     steps = step_s.size
-    slack_point, slack_cable, slack_points = -1, -1, 0
     for point in range(steps + 1):
         if point == jump_point:
             state += jump
         culprit = first_beyond(state, limit)
         if culprit >= 0:
-            return point, culprit, slack_point, slack_cable, slack_points
-        if row_of_point[point] >= 0:
-            trajectory[row_of_point[point]] = state
+            return point, culprit
+        first, last = first_row[point], first_row[point + 1]
+        if first < last and inside[first] < 0:
+            trajectory[first] = state
+            first += 1
         if point == steps:
             break
-        slack = step(
-            state, step_s[point], drive[point], stage_weights, step_weights, plant, rates, trial
+        now = drive[point]
+        evaluate(state, step_s[point], now, stage_weights, 0, stages, plant, extras, rates, trial)
+        if first < last:
+            evaluate(
+                state,
+                step_s[point],
+                now,
+                stage_weights,
+                stages,
+                needed,
+                plant,
+                extras,
+                rates,
+                trial,
+            )
+            for row in range(first, last):
+                weights = inside_weights[inside[row]]
+                advance(state, step_s[point], weights, rates, needed, trajectory[row])
+        advance(state, step_s[point], step_weights, rates, stages, state)
+    return steps + 1, -1
+
+
+def observe(states: Array, drive: Array, plant: Any, extras: Any, cables_out: Array) -> None:
+    """The cables of a trajectory.
+
+    Parameters
+    ----------
+    states
+        Shape (n, s).
+    drive
+        The drive at each of them, shape (n, 6 or 22); or one row for all.
+    plant, extras
+        A `Plant` and an `Extras`.
+    cables_out
+        Filled with L_i, Delta L_i, v_yi, the tension at the anchor and behind the pulley,
+        shape (5, n, 8).
+    """
+    for row in range(states.shape[0]):
+        state = states[row]
+        angles = trigonometry((state[3], state[4], state[5]))
+        velocity = (state[6], state[7], state[8])
+        omega = angular_velocity(angles, (state[9], state[10], state[11]))
+        turn = rotation(angles)
+        command = drive[min(row, drive.shape[0] - 1)]
+        for i in range(plant.stiffness.size):
+            line = cable(i, state, command, turn, velocity, omega, plant, extras)
+            cables_out[0, row, i] = line.length
+            cables_out[1, row, i] = line.elongation
+            cables_out[2, row, i] = line.axial_velocity
+            cables_out[3, row, i] = line.pull
+            cables_out[4, row, i] = max(line.pull - line.behind, 0.0)
+
+
+def drive_wrench(pose: Array, rate: Array, acceleration_: Array, plant: Any, wrench: Array) -> None:
+    """M X'' + W_C - W_G - J_A^T T of Eq. 2 for a platform on elastic cables, time by time.
+
+    Parameters
+    ----------
+    pose, rate, acceleration_
+        X, X' and X'', shape (n, 6); m, rad and s.
+    plant
+        The nominal `Plant`.
+    wrench
+        Filled with force and moment about the centre of mass in O-XYZ, shape (n, 6); N and N m.
+    """
+    for row in range(pose.shape[0]):
+        angles = trigonometry((pose[row, 3], pose[row, 4], pose[row, 5]))
+        turn = rotation(angles)
+        force, moment = required_wrench(
+            plant.mass,
+            plant.inertia,
+            angles,
+            (rate[row, 3], rate[row, 4], rate[row, 5]),
+            (acceleration_[row, 0], acceleration_[row, 1], acceleration_[row, 2]),
+            (acceleration_[row, 3], acceleration_[row, 4], acceleration_[row, 5]),
         )
-        if slack >= 0:
-            slack_points += 1
-            if slack_cable < 0:
-                slack_point, slack_cable = point, slack
-    return steps + 1, -1, slack_point, slack_cable, slack_points
+        force = add(force, (0.0, 0.0, plant.mass * plant.gravity))
+        for i in range(plant.stiffness.size):
+            base = (plant.base[i, 0], plant.base[i, 1], plant.base[i, 2])
+            arm = transform(turn, (plant.anchor[i, 0], plant.anchor[i, 1], plant.anchor[i, 2]))
+            position = (pose[row, 0], pose[row, 1], pose[row, 2])
+            length, direction = cable_line(base, position, arm)
+            elongation = length - plant.rest_length[i]
+            pull = tension(plant.pretension[i], plant.stiffness[i], elongation, 0.0, length)
+            force = subtract(force, scale(pull, direction))
+            moment = subtract(moment, scale(pull, cross(arm, direction)))
+        for axis in range(3):
+            wrench[row, axis] = force[axis]
+            wrench[row, 3 + axis] = moment[axis]

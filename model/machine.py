@@ -87,14 +87,28 @@ class Machine:
 
         From the cables' elastic stiffness J_A^T k J_A alone: what pretension adds is left out.
         """
+        squares = self._per_inertia(self.stiffness)
+        return np.sort(np.sqrt(np.maximum(squares, 0.0))) / (2.0 * np.pi)
+
+    def fastest_decay_1_per_s(self, damping_n_s_per_m: Array) -> float:
+        """How fast the platform's quickest motion dies with dampers along its cables.
+
+        Parameters
+        ----------
+        damping_n_s_per_m
+            Shape (8,).
+        """
+        return float(self._per_inertia(damping_n_s_per_m).max())
+
+    def _per_inertia(self, along_cables: Array) -> Array:
+        """Eigenvalues of M^-1 J_A^T c J_A, c a law of each cable along itself, shape (6,)."""
         direction = (self.base - self.anchor) / self.rest_length[:, None]
         structure = np.hstack([direction, np.cross(self.anchor, direction)])
-        stiffness = structure.T @ (self.stiffness[:, None] * structure)
         inertia = np.zeros((6, 6))
         inertia[:3, :3] = self.mass * np.eye(3)
         inertia[3:, 3:] = self.inertia
-        squares = np.linalg.eigvals(np.linalg.solve(inertia, stiffness)).real
-        return np.sort(np.sqrt(np.maximum(squares, 0.0))) / (2.0 * np.pi)
+        whole = structure.T @ (along_cables[:, None] * structure)
+        return np.asarray(np.linalg.eigvals(np.linalg.solve(inertia, whole)).real)
 
     def plant(self) -> Plant:
         """The arrays in the order the kernel reads them."""

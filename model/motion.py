@@ -72,6 +72,8 @@ class RampedSine:
         Over this time w rises from 0 to 1, and falls back before the end; 0 for w = 1 throughout.
     duration_s
         With the rest before and after.
+    phase_rad
+        Added to 2 pi f tau.
     """
 
     axis: int
@@ -81,6 +83,7 @@ class RampedSine:
     motion_s: float
     ramp_s: float
     duration_s: float
+    phase_rad: float = 0.0
 
     @classmethod
     def from_excitation(cls, excitation: Excitation) -> Self:
@@ -118,7 +121,8 @@ class RampedSine:
         tau = time_s - self.start_s
         window, window_1, window_2 = self._window(tau)
         circular = 2.0 * np.pi * self.frequency_hz
-        sine, cosine = np.sin(circular * tau), np.cos(circular * tau)
+        angle_rad = circular * tau + self.phase_rad
+        sine, cosine = np.sin(angle_rad), np.cos(angle_rad)
         angle = window * sine
         rate = window_1 * sine + circular * window * cosine
         acceleration = window_2 * sine + 2.0 * circular * window_1 * cosine
@@ -138,8 +142,8 @@ class RampedSine:
         """w, w' and w'': up over the first ramp, down over the last."""
         if self.ramp_s == 0.0:
             return np.ones_like(tau), np.zeros_like(tau), np.zeros_like(tau)
-        up, up_1, up_2 = _smooth_step(tau / self.ramp_s)
-        down, down_1, down_2 = _smooth_step((self.motion_s - tau) / self.ramp_s)
+        up, up_1, up_2 = smooth_step(tau / self.ramp_s)
+        down, down_1, down_2 = smooth_step((self.motion_s - tau) / self.ramp_s)
         return (
             up * down,
             (up_1 * down - up * down_1) / self.ramp_s,
@@ -147,7 +151,7 @@ class RampedSine:
         )
 
 
-def _smooth_step(x: Array) -> Command:
+def smooth_step(x: Array) -> Command:
     """10 x^3 - 15 x^4 + 6 x^5 on [0, 1] and its derivatives: two of them vanish at both ends."""
     x = np.clip(x, 0.0, 1.0)
     return (

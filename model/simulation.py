@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from model.library.selection import ActiveEffect
 from model.status import Outcome
 
 if TYPE_CHECKING:
@@ -51,9 +52,11 @@ class Simulation:
     commanded_pose
         X*, shape (n, 6).
     tension_n
-        T_i of Eq. 16, shape (n, 8).
+        T_i where the cell of each cable sits, shape (n, 8); Eq. 16 where nothing was left out.
+    anchor_tension_n
+        The tension at the anchor, shape (n, 8): it differs where a pulley stands before the cell.
     elongation_m
-        Delta L_i of Eq. 14, shape (n, 8).
+        Delta L_i of Eq. 14, less what a winch has paid out, shape (n, 8).
     axial_velocity_m_per_s
         v_yi = dL_i/dt, shape (n, 8).
     cable_offset_m, cable_offset_rate_m_per_s
@@ -67,7 +70,9 @@ class Simulation:
     stats
         How the numbers were made.
     provenance
-        What they came from: rig, excitation, versions.
+        What they came from: rig, excitation, effects, versions.
+    effects
+        The left-out effects that were on, those of the measurement included.
     """
 
     t_s: Array
@@ -75,6 +80,7 @@ class Simulation:
     pose_rate: Array
     commanded_pose: Array
     tension_n: Array
+    anchor_tension_n: Array
     elongation_m: Array
     axial_velocity_m_per_s: Array
     cable_offset_m: Array
@@ -84,6 +90,7 @@ class Simulation:
     outcome: Outcome
     stats: Stats
     provenance: Mapping[str, object]
+    effects: tuple[ActiveEffect, ...] = ()
 
     @property
     def tension_variation_n(self) -> Array:

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdpr8 import CABLES
-from model.kernel import PLATFORM_STATES
+from model.kernel import PLATFORM_STATES, STATES
+
+Array = NDArray[np.float64]
 
 PLATFORM_QUANTITIES = ("x", "y", "z", "roll", "pitch", "yaw")
 
@@ -36,7 +38,7 @@ class Outcome:
     time_s
         When it first happened.
     slack_share
-        Fraction of the steps with a slack cable.
+        Fraction of the outputs with a slack cable.
     """
 
     status: Status
@@ -52,7 +54,7 @@ class Outcome:
         if self.status is Status.SLACK:
             return (
                 f"slack: {self.what} first at {self.time_s:.3f} s, some cable in "
-                f"{100 * self.slack_share:.2g} % of the steps; tensions there are clamped at 0"
+                f"{100 * self.slack_share:.2g} % of the outputs; tensions there are clamped at 0"
             )
         return (
             f"blow_up: {self.what} at {self.time_s:.3f} s, and the run ends there; "
@@ -60,33 +62,32 @@ class Outcome:
         )
 
 
-def outcome(
-    point_s: NDArray[np.float64],
-    *,
-    culprit: int,
-    culprit_point: int,
-    slack_point: int,
-    slack_cable: int,
-    slack_points: int,
-) -> Outcome:
-    """Read what the kernel returns.
+def outcome(time_s: Array, tension_n: Array, *, culprit: int, end_s: float) -> Outcome:
+    """How a run ended.
 
     Parameters
     ----------
-    point_s
-        Times of the integrator's points.
-    culprit, culprit_point
-        Index of the state that blew up, -1 for none, and where.
-    slack_point, slack_cable, slack_points
-        The first point with a slack cable, its index, -1 for none, and how many there were.
+    time_s, tension_n
+        The outputs, shapes (n,) and (n, 8).
+    culprit, end_s
+        Index of the state that blew up, -1 for none, and when.
     """
-    share = slack_points / max(1, len(point_s) - 1)
+    slack = tension_n <= 0.0
+    rows = slack.any(axis=1)
+    share = float(rows.mean()) if rows.size else 0.0
     if culprit >= 0:
         vibration = culprit - PLATFORM_STATES
         cable = vibration % CABLES + 1 if 0 <= vibration < 2 * CABLES else None
-        what = f"cable {cable}" if cable else PLATFORM_QUANTITIES[culprit % 6]
-        return Outcome(Status.BLOW_UP, what, cable, float(point_s[culprit_point]), share)
-    if slack_cable >= 0:
-        number = slack_cable + 1
-        return Outcome(Status.SLACK, f"cable {number}", number, float(point_s[slack_point]), share)
+        what = f"cable {cable}" if cable else _platform_or_effect(culprit)
+        return Outcome(Status.BLOW_UP, what, cable, end_s, share)
+    if share > 0.0:
+        first = int(rows.argmax())
+        number = int(slack[first].argmax()) + 1
+        return Outcome(Status.SLACK, f"cable {number}", number, float(time_s[first]), share)
     return Outcome(Status.OK)
+
+
+def _platform_or_effect(culprit: int) -> str:
+    if culprit >= STATES:
+        return "a left-out effect's own state"
+    return PLATFORM_QUANTITIES[culprit % 6]

@@ -38,6 +38,7 @@ class Amplifier(Section):
     """The force cell of one cable and the transducer electronics that read it."""
 
     address: int = Field(ge=0, le=31)
+    port: str = Field(default="", description="its own serial port, where [bus] streaming = true")
     serial_number: str = Field(default="", max_length=7)
     nominal_force_n: float = Field(default=50.0, gt=0.0)
     sensitivity_mv_per_v: float = Field(default=1.0, gt=0.0, description="from the certificate")
@@ -73,6 +74,11 @@ class Bus(Section):
     port: str = "simulated"
     baud: Literal[1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200] = 115200
     parity: Literal["even", "none"] = "even"
+    echo: bool = Field(default=False, description="a 2-wire adapter hears what it sends")
+    streaming: bool = Field(
+        default=False,
+        description="each amplifier has a serial port of its own and sends its values unasked",
+    )
     checksum: bool = Field(
         default=True,
         description="a checksum guards each value, in the place of the amplifier's status byte; "
@@ -211,7 +217,7 @@ class Excitation(Section):
     motion_start_s: float | None = Field(default=None, ge=0.0, description="default: rest_s")
     motion_s: float = Field(default=8.0, gt=0.0, description="length of the motion with ramps")
     ramp_s: float = Field(default=0.5, ge=0.0)
-    drive: Literal["wrench"] = "wrench"
+    drive: Literal["wrench", "winch"] = "wrench"
     platform_offset_m: Vector = Field(
         default=(1e-4, 0.0, 0.0), description="X_p0, at the motion's start"
     )

@@ -25,11 +25,11 @@ def test_compiling_is_announced_where_nothing_is_cached(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said: list[str] = []
-    monkeypatch.setattr(compiled, "_integrator", lambda: None)
+    monkeypatch.setattr(compiled, "compiled", lambda name: None)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     compiled.integrator(said.append)
     assert said == [compiled.COMPILING]
-    (compiled.cache_folder() / "kernel.nbc").touch()
+    (compiled.cache_folder() / "kernel.integrate-1.nbc").touch()
     compiled.integrator(said.append)
     assert len(said) == 1
 

@@ -21,7 +21,8 @@ def test_the_nominal_platform_follows_the_command_to_rounding(
     rig: Rig, axis: str, ramp_s: float
 ) -> None:
     # Without a fall of the amplitude X* stops dead at the end, and no platform follows that.
-    run = simulate(rig, motion(axis=axis, ramp_s=ramp_s, amplitude_deg=8.0, frequency_hz=3.0))
+    course = motion(axis=axis, ramp_s=ramp_s, amplitude_deg=8.0, frequency_hz=3.0)
+    run = simulate(rig, course, step_s=1e-3)
     followed = run.t_s <= run.steady_window_s[1]
     assert np.abs(run.commanded_pose).max() > np.deg2rad(7.5)
     assert np.abs(run.pose - run.commanded_pose)[followed].max() < 1e-11

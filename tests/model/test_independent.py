@@ -170,5 +170,5 @@ def test_a_tumbling_platform_agrees_with_scipy(rig: Rig) -> None:
     for _ in range(20):
         state = random.normal(size=28) * np.repeat([0.05, 0.4, 0.5, 2.0, 0.02], [3, 3, 3, 3, 16])
         ours = np.empty(28)
-        derivative(state, drive, Machine.from_rig(rig).plant(), ours)
+        derivative(state, drive, Machine.from_rig(rig).plant(), None, ours)
         assert ours == pytest.approx(theirs(0.0, state), rel=1e-9, abs=1e-9)

@@ -3,39 +3,51 @@ import pytest
 from scipy.integrate import DOP853
 
 from cdpr8.rigfile import Excitation, Rig
-from model import Machine, compiled, kernel, simulate
-from model.drive import wrench_table
+from model import compiled, dop853, kernel, simulate
+from model.extras import pack, state_count
+from model.library.discovery import kernel_effects
+from model.library.selection import ActiveEffect
 from model.method import METHODS, find_method
-from model.motion import RampedSine
-from model.steps import divide
+from model.task import Task
+from model.trajectory import rows_inside
 
 
-def problem(rig: Rig, steps_taken: int) -> tuple:
+def problem(rig: Rig, steps_taken: int, effects: tuple[ActiveEffect, ...] = ()) -> tuple:
     """Arguments of `integrate` for the start of a lively run, made afresh each time."""
-    machine, method = Machine.from_rig(rig), find_method("dop853")
-    motion = RampedSine.from_excitation(Excitation(rest_s=0.0, motion_s=1.0, ramp_s=0.0))
-    steps = divide(motion, 1000.0, 1e-3)
-    wrench = wrench_table(machine, motion, steps.stage_s(method.nodes), steps.middle_s)
-    state = np.random.default_rng(1).normal(size=kernel.STATES) * 1e-2
+    method, states = find_method("dop853"), state_count(effects)
+    task = Task(rig, Excitation(rest_s=0.0, motion_s=1.0, ramp_s=0.0), effects=effects)
+    steps = task.steps(method, 1000.0, 2e-3)
+    inside, inside_weights = rows_inside(method, steps)
+    state = np.random.default_rng(1).normal(size=states) * 1e-2
     return (
         state,
         steps.step_s[:steps_taken],
-        wrench[:steps_taken],
+        task.drive_at_stages(method, steps)[:steps_taken],
         0,
-        np.full(kernel.STATES, 1e-4),
-        np.arange(steps_taken + 1),
-        np.full(kernel.STATES, 1e3),
+        np.full(states, 1e-4),
+        steps.first_row[: steps_taken + 2],
+        inside,
+        inside_weights,
+        np.full(states, 1e9),
         method.stage_weights,
         method.step_weights,
-        machine.plant(),
-        np.empty((steps_taken + 1, kernel.STATES)),
+        task.machine.plant(),
+        pack(task.machine, effects),
+        np.zeros((2 * steps_taken + 2, states)),
     )
 
 
-def test_the_compiled_kernel_is_the_python_kernel(rig: Rig) -> None:
-    plain, fast = problem(rig, 20), problem(rig, 20)
+EFFECTS = tuple(ActiveEffect(effect.name) for effect in kernel_effects())
+
+
+@pytest.mark.parametrize("effects", [(), EFFECTS], ids=["none", "all"])
+def test_the_compiled_kernel_is_the_python_kernel(
+    rig: Rig, effects: tuple[ActiveEffect, ...]
+) -> None:
+    plain, fast = problem(rig, 10, effects), problem(rig, 10, effects)
     assert kernel.integrate(*plain) == compiled.integrator()(*fast)
-    assert fast[-1] == pytest.approx(plain[-1], rel=1e-12, abs=1e-14)
+    assert fast[-1] == pytest.approx(plain[-1], rel=1e-9, abs=1e-12)
+    assert plain[-1][20].any()
 
 
 def test_a_nan_counts_as_beyond_every_limit() -> None:
@@ -46,10 +58,22 @@ def test_a_nan_counts_as_beyond_every_limit() -> None:
 
 
 def test_the_coefficients_of_dop853_are_scipys() -> None:
-    method, stages = find_method("dop853"), DOP853.n_stages
-    assert np.array_equal(method.nodes, DOP853.C[:stages])
-    assert np.array_equal(method.stage_weights, DOP853.A[:stages, :stages])
-    assert np.array_equal(method.step_weights, DOP853.B[:stages])
+    method = find_method("dop853")
+    last = DOP853.n_stages
+    assert np.array_equal(method.nodes, [*DOP853.C[:last], 1.0, *DOP853.C_EXTRA])
+    assert np.array_equal(method.stage_weights[:last, :last], DOP853.A[:last, :last])
+    assert np.array_equal(method.stage_weights[last, :last], DOP853.B)
+    assert np.array_equal(method.stage_weights[last + 1 :], DOP853.A_EXTRA)
+    assert np.array_equal(method.step_weights, DOP853.B)
+    assert np.array_equal(np.array(dop853.DENSE_WEIGHTS), DOP853.D)
+
+
+def test_values_inside_a_step_meet_its_ends() -> None:
+    method = find_method("dop853")
+    start, end = method.weights_inside(np.array([0.0, 1.0]))
+    assert not start.any()
+    assert end[:12] == pytest.approx(method.step_weights, abs=1e-14)
+    assert end[12:] == pytest.approx(np.zeros(4), abs=1e-14)
 
 
 @pytest.mark.parametrize("name", METHODS)

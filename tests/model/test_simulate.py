@@ -144,7 +144,7 @@ def test_a_rig_with_fast_cables_takes_more_steps(rig: Rig) -> None:
         for cable in rig.cable
     )
     run = simulate(rig.model_copy(update={"cable": thin}), SHORT)
-    assert run.stats.longest_step_s == pytest.approx(1e-3 / 3)
+    assert run.stats.longest_step_s == pytest.approx(1e-3 / 8)
     assert len(run.t_s) == 1601
 
 

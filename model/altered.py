@@ -1,0 +1,221 @@
+"""Motions as an imperfect drive makes them of the commanded one."""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.motion import Command, Motion, RampedSine
+
+Array = NDArray[np.float64]
+
+GRID_HZ = 4000.0
+"""Play depends on what went before: it is followed on this grid, and interpolated."""
+
+STEEPNESS = 4
+"""How sharply a stop is met."""
+
+
+@dataclass(frozen=True)
+class Altered:
+    """A motion made larger, faster or later.
+
+    Parameters
+    ----------
+    motion
+        As commanded.
+    factor
+        On the whole of it.
+    pace
+        How much faster it runs from its start on.
+    late_s
+        How much later it starts.
+    """
+
+    motion: Motion
+    factor: float = 1.0
+    pace: float = 1.0
+    late_s: float = 0.0
+
+    @property
+    def start_s(self) -> float:
+        """When it starts."""
+        return self.motion.start_s + self.late_s
+
+    @property
+    def duration_s(self) -> float:
+        """How long the whole lasts: as commanded."""
+        return self.motion.duration_s
+
+    @property
+    def breaks_s(self) -> tuple[float, ...]:
+        """Where it is not smooth."""
+        return tuple(self._when(time_s) for time_s in self.motion.breaks_s)
+
+    @property
+    def steady_window_s(self) -> tuple[float, float]:
+        """Where amplitudes are taken: as commanded."""
+        return self.motion.steady_window_s
+
+    def at(self, time_s: Array, within_s: Array | None = None) -> Command:
+        """X*, X*' and X*''; see `Motion.at`."""
+        within = None if within_s is None else self._inner(np.asarray(within_s))
+        pose, rate, acceleration = self.motion.at(self._inner(np.asarray(time_s)), within)
+        first, second = self.factor * self.pace, self.factor * self.pace**2
+        return self.factor * pose, first * rate, second * acceleration
+
+    def _inner(self, time_s: Array) -> Array:
+        start_s = self.motion.start_s
+        inner: Array = start_s + self.pace * (time_s - self.start_s)
+        return inner
+
+    def _when(self, inner_s: float) -> float:
+        return self.start_s + (inner_s - self.motion.start_s) / self.pace
+
+
+@dataclass(frozen=True)
+class Distorted:
+    """A sine with one harmonic.
+
+    Parameters
+    ----------
+    motion
+        As commanded; one that is no sine stays as it is.
+    share, order, phase_rad
+        Amplitude over that of the sine, order and phase of the harmonic.
+    """
+
+    motion: Motion
+    share: float
+    order: int
+    phase_rad: float
+
+    @property
+    def start_s(self) -> float:
+        """When it starts."""
+        return self.motion.start_s
+
+    @property
+    def duration_s(self) -> float:
+        """How long the whole lasts."""
+        return self.motion.duration_s
+
+    @property
+    def breaks_s(self) -> tuple[float, ...]:
+        """Where it is not smooth."""
+        return self.motion.breaks_s
+
+    @property
+    def steady_window_s(self) -> tuple[float, float]:
+        """Where amplitudes are taken."""
+        return self.motion.steady_window_s
+
+    def at(self, time_s: Array, within_s: Array | None = None) -> Command:
+        """X*, X*' and X*''; see `Motion.at`."""
+        total = self.motion.at(time_s, within_s)
+        for sine in _sines(self.motion):
+            harmonic = replace(
+                sine,
+                amplitude_rad=self.share * sine.amplitude_rad,
+                frequency_hz=self.order * sine.frequency_hz,
+                phase_rad=self.phase_rad,
+            )
+            added = harmonic.at(time_s, within_s)
+            total = (total[0] + added[0], total[1] + added[1], total[2] + added[2])
+        return total
+
+
+def _sines(motion: Motion) -> tuple[RampedSine, ...]:
+    """The sine a motion is made of, as an imperfect drive has altered it so far."""
+    if isinstance(motion, RampedSine):
+        return (motion,)
+    if isinstance(motion, Altered) and isinstance(motion.motion, RampedSine):
+        sine = motion.motion
+        return (
+            replace(
+                sine,
+                amplitude_rad=motion.factor * sine.amplitude_rad,
+                frequency_hz=motion.pace * sine.frequency_hz,
+                start_s=sine.start_s + motion.late_s,
+            ),
+        )
+    return ()
+
+
+@dataclass(frozen=True)
+class Loose:
+    """A motion that plays by d to either side, on its angles.
+
+    Parameters
+    ----------
+    motion
+        As commanded.
+    play_rad
+        Half the play, d.
+    """
+
+    motion: Motion
+    play_rad: float
+
+    @property
+    def start_s(self) -> float:
+        """When it starts."""
+        return self.motion.start_s
+
+    @property
+    def duration_s(self) -> float:
+        """How long the whole lasts."""
+        return self.motion.duration_s
+
+    @property
+    def breaks_s(self) -> tuple[float, ...]:
+        """Where it is not smooth."""
+        return self.motion.breaks_s
+
+    @property
+    def steady_window_s(self) -> tuple[float, float]:
+        """Where amplitudes are taken."""
+        return self.motion.steady_window_s
+
+    def at(self, time_s: Array, within_s: Array | None = None) -> Command:
+        """X*, X*' and X*''; see `Motion.at`."""
+        pose, rate, acceleration = (values.copy() for values in self.motion.at(time_s, within_s))
+        if self.play_rad == 0.0:
+            return pose, rate, acceleration
+        lag = np.zeros_like(pose)
+        for axis, (grid_s, values) in enumerate(_followed(self), start=3):
+            lag[..., axis] = np.interp(time_s, grid_s, values)
+        way = np.sign(rate)
+        near = np.maximum(way * lag / self.play_rad, 0.0)
+        free = 1.0 - near**STEEPNESS
+        near_rate = way * rate * free / self.play_rad
+        free_rate = -STEEPNESS * near ** (STEEPNESS - 1) * near_rate
+        angles = slice(3, 6)
+        pose[..., angles] -= lag[..., angles]
+        acceleration[..., angles] -= (acceleration * free + rate * free_rate)[..., angles]
+        rate[..., angles] -= (rate * free)[..., angles]
+        return pose, rate, acceleration
+
+
+@lru_cache(maxsize=4)
+def _followed(loose: Loose) -> tuple[tuple[Array, Array], ...]:
+    """The lag z of each angle on the grid."""
+    grid_s = np.arange(int(loose.duration_s * GRID_HZ) + 2) / GRID_HZ
+    angles = loose.motion.at(grid_s)[0][:, 3:]
+    return tuple((grid_s, _play(angles[:, axis], loose.play_rad)) for axis in range(3))
+
+
+def _play(values: Array, play: float) -> Array:
+    """Follow z: it moves with the value, and less and less as it nears the stop at +-d."""
+    lag = np.zeros_like(values)
+    if not np.any(values):
+        return lag
+    z = 0.0
+    for row, change in enumerate(np.diff(values), start=1):
+        near = max(0.0, np.sign(change) * z / play)
+        half = z + 0.5 * change * (1.0 - near**STEEPNESS)
+        near = max(0.0, np.sign(change) * half / play)
+        z += change * (1.0 - min(near, 1.0) ** STEEPNESS)
+        lag[row] = z
+    return lag

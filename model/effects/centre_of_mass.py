@@ -1,0 +1,34 @@
+"""Centre of mass of the platform elsewhere than the rig file says."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from model.library.effect import Acts, Effect, Parameter
+
+if TYPE_CHECKING:
+    from model.machine import Machine
+
+
+def change(machine: "Machine", centre_x_m: Any, centre_y_m: Any, centre_z_m: Any) -> "Machine":
+    """Anchors and base points seen from the moved centre; lengths at rest stay."""
+    from dataclasses import replace
+
+    moved = np.array([centre_x_m[0], centre_y_m[0], centre_z_m[0]])
+    return replace(machine, anchor=machine.anchor - moved, base=machine.base - moved)
+
+
+EFFECT = Effect(
+    name="centre_of_mass",
+    title="centre of mass of the platform",
+    acts=Acts.PARAMETER,
+    equation="x_P - d, B - d",
+    source="rig file",
+    signature="a constant moment of the weight; rotation and translation couple",
+    parameters=(
+        Parameter("centre_x_m", "m", 2e-3, -0.05, 0.05, "d along X", False, True),
+        Parameter("centre_y_m", "m", 0.0, -0.05, 0.05, "d along Y", False, True),
+        Parameter("centre_z_m", "m", 0.0, -0.05, 0.05, "d along Z", False, True),
+    ),
+    change=change,
+)

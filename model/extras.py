@@ -1,0 +1,106 @@
+"""The effects that are on, packed as the kernel reads them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdpr8 import CABLES
+from model.kernel import STATES, Extras
+from model.library.discovery import first_parameters, kernel_effects, parameter_rows
+from model.library.effect import Acts
+from model.library.lanes import CABLE
+from model.library.selection import ActiveEffect
+from model.machine import Machine
+
+Array = NDArray[np.float64]
+
+
+def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
+    """The effects of the plant, for the kernel.
+
+    Parameters
+    ----------
+    machine
+        Says which cables share a post.
+    effects
+        All effects that are on; those that do not act in the plant are passed over. One that is
+        named has its law run, also where its magnitude is zero.
+    """
+    on = switches(effects)
+    if not on.any():
+        return None
+    offset = np.zeros(len(kernel_effects()), dtype=np.int64)
+    states = STATES
+    names = {one.name for one in effects}
+    for place, effect in enumerate(kernel_effects()):
+        if effect.name in names:
+            offset[place] = states
+            states += CABLES * len(effect.states)
+    return Extras(on, offset, posts(machine)[0], cable_numbers(machine, effects))
+
+
+def switches(effects: Sequence[ActiveEffect]) -> NDArray[np.int64]:
+    """Which effects act on each cable, a bit for each; those of the platform with cable 1."""
+    on = np.zeros(CABLES, dtype=np.int64)
+    named = {one.name: one for one in effects}
+    for place, effect in enumerate(kernel_effects()):
+        if effect.name in named:
+            cables = np.array(named[effect.name].cables) - 1
+            on[0 if effect.acts is Acts.PLATFORM else cables] |= 1 << place
+    return on
+
+
+def cable_numbers(machine: Machine, effects: Sequence[ActiveEffect]) -> Array:
+    """What laws may ask of each cable, and the parameters of all effects.
+
+    Of effects that are off, magnitudes are zero, and the rest have their default: no law shall
+    divide by zero.
+
+    Returns
+    -------
+    Array
+        Shape (8, any), laid out as `model.library.lanes` says.
+    """
+    numbers = np.zeros((CABLES, CABLE["values"] + parameter_rows()))
+    known = {
+        "base": machine.base,
+        "anchor": machine.anchor,
+        "rest_length": machine.rest_length,
+        "stiffness": machine.stiffness,
+        "pretension": machine.pretension,
+        "line_density": machine.line_density,
+        "damping": machine.damping,
+        "gravity": np.full(CABLES, machine.gravity),
+        "post_share": posts(machine)[1],
+        "rest_direction": (machine.base - machine.anchor) / machine.rest_length[:, None],
+    }
+    for name, values in known.items():
+        block = values.reshape(CABLES, -1)
+        numbers[:, CABLE[name] : CABLE[name] + block.shape[1]] = block
+    named = {one.name: one.columns() for one in effects}
+    for effect in kernel_effects():
+        column = CABLE["values"] + first_parameters()[effect.name]
+        for which, parameter in enumerate(effect.parameters):
+            off = 0.0 if parameter.magnitude else parameter.default
+            numbers[:, column + which] = named.get(effect.name, {}).get(parameter.name, off)
+    return numbers
+
+
+def state_count(effects: Sequence[ActiveEffect]) -> int:
+    """Length of the state vector with these effects."""
+    extra = (len(one.effect.states) for one in effects if one.effect.acts.in_kernel)
+    return STATES + CABLES * sum(extra)
+
+
+def posts(machine: Machine) -> tuple[NDArray[np.int64], Array]:
+    """The cables of a post: those whose base points stand in the same quadrant of the floor.
+
+    Returns
+    -------
+    carrier, share
+        Index of the first cable of each cable's post, and one over the number of its cables.
+    """
+    quadrant = 2 * (machine.base[:, 0] > 0.0) + (machine.base[:, 1] > 0.0)
+    same = quadrant[:, None] == quadrant[None, :]
+    return same.argmax(axis=1).astype(np.int64), 1.0 / same.sum(axis=1)

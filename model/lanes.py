@@ -1,0 +1,525 @@
+"""Sixteen simulations side by side: the equations of `model.kernel` on flat arrays.
+
+The laws are the same functions; only the loops differ. Each quantity stands in `LANES` neighbours
+of a flat array, so that one vector instruction serves eight simulations, and every loop over lanes
+is free of branches and of the C library: the rules of notes/solver.md. `model.library.lanes` says
+where what stands. Like the scalar kernel, this runs as plain Python too.
+
+Arrays, all flat but the rates: ``y`` states, ``f`` their rates, ``q`` the numbers of the machines,
+``work`` room to work in.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.cable import tension, transverse_acceleration
+from model.kernel import STATES, WRENCH
+from model.kinematics import (
+    angular_velocity,
+    cable_line,
+    cross,
+    length_rate,
+    rotation,
+    transform,
+)
+from model.library.assembled import lane_pull, lane_rates, lane_wrench
+from model.library.lanes import lane_row
+from model.platform import acceleration
+
+Array = NDArray[np.float64]
+
+CABLES = 8
+LANES = 16
+
+ANGLES = 0
+TURN = 6 * LANES
+OMEGA = 15 * LANES
+FORCE = 18 * LANES
+MOMENT = 21 * LANES
+POSITION = 24 * LANES
+VELOCITY = 27 * LANES
+RATES = 30 * LANES
+ARM = 33 * LANES
+DIRECTION = 36 * LANES
+LENGTH = 39 * LANES
+ELONGATION = 40 * LANES
+ELONGATION_RATE = 41 * LANES
+AXIAL_VELOCITY = 42 * LANES
+ANCHOR_VELOCITY = 43 * LANES
+ELASTIC = 46 * LANES
+PULL = 47 * LANES
+BEHIND = 48 * LANES
+MID_SPAN = 49 * LANES
+MID_SPAN_RATE = 50 * LANES
+ACCELERATION = 51 * LANES
+WORK = 57 * LANES
+"""First of each quantity in `work`; a test holds them to `model.library.lanes`."""
+
+BASE = 0
+ANCHOR = 3 * LANES
+REST_LENGTH = 6 * LANES
+STIFFNESS = 7 * LANES
+PRETENSION = 8 * LANES
+LINE_DENSITY = 9 * LANES
+DAMPING = 10 * LANES
+"""First of each number of a cable in its part of `q`."""
+
+MASS = 0
+GRAVITY = LANES
+INERTIA = 2 * LANES
+INVERSE_INERTIA = 11 * LANES
+PLATFORM = 20 * LANES
+"""First of each number of the platform in its part of `q`."""
+
+TWO_OVER_PI = 0.6366197723675814
+HALF_PI_HIGH = 1.5707963267948966
+HALF_PI_LOW = 6.123233995736766e-17
+"""pi / 2 in two parts: angles of a platform are a few rad at most."""
+
+
+def sine_cosine(x: Any) -> Any:
+    """Sine and cosine without branches; Moshier's polynomials (Cephes), error 1e-16."""
+    turns = np.floor(x * TWO_OVER_PI + 0.5)
+    r = (x - turns * HALF_PI_HIGH) - turns * HALF_PI_LOW
+    z = r * r
+    sine = r + r * z * (
+        -1.66666666666666307295e-1
+        + z
+        * (
+            8.33333333332211858878e-3
+            + z
+            * (
+                -1.98412698295895385996e-4
+                + z
+                * (
+                    2.75573136213857245213e-6
+                    + z * (-2.50507477628578072866e-8 + z * 1.58962301576546568060e-10)
+                )
+            )
+        )
+    )
+    cosine = (
+        1.0
+        - 0.5 * z
+        + z
+        * z
+        * (
+            4.16666666666665929218e-2
+            + z
+            * (
+                -1.38888888888730564116e-3
+                + z
+                * (
+                    2.48015872888517045348e-5
+                    + z
+                    * (
+                        -2.75573141792967388112e-7
+                        + z * (2.08757008419747316778e-9 - z * 1.13585365213876817300e-11)
+                    )
+                )
+            )
+        )
+    )
+    odd = turns - 2.0 * np.floor(0.5 * turns)
+    half = 0.5 * (turns - odd)
+    flip = 1.0 - 2.0 * (half - 2.0 * np.floor(0.5 * half))
+    even = 1.0 - odd
+    return flip * (even * sine + odd * cosine), flip * (even * cosine - odd * sine)
+
+
+def locate(y: Array, work: Array) -> None:
+    """Angles, rotation and velocities of the platforms."""
+    for w in range(LANES):
+        sin_roll, cos_roll = sine_cosine(y[3 * LANES + w])
+        sin_pitch, cos_pitch = sine_cosine(y[4 * LANES + w])
+        sin_yaw, cos_yaw = sine_cosine(y[5 * LANES + w])
+        angles = (sin_roll, cos_roll, sin_pitch, cos_pitch, sin_yaw, cos_yaw)
+        rates = (y[9 * LANES + w], y[10 * LANES + w], y[11 * LANES + w])
+        turn = rotation(angles)
+        omega = angular_velocity(angles, rates)
+        work[ANGLES + w] = sin_roll
+        work[ANGLES + LANES + w] = cos_roll
+        work[ANGLES + 2 * LANES + w] = sin_pitch
+        work[ANGLES + 3 * LANES + w] = cos_pitch
+        work[ANGLES + 4 * LANES + w] = sin_yaw
+        work[ANGLES + 5 * LANES + w] = cos_yaw
+        work[TURN + w] = turn[0][0]
+        work[TURN + LANES + w] = turn[0][1]
+        work[TURN + 2 * LANES + w] = turn[0][2]
+        work[TURN + 3 * LANES + w] = turn[1][0]
+        work[TURN + 4 * LANES + w] = turn[1][1]
+        work[TURN + 5 * LANES + w] = turn[1][2]
+        work[TURN + 6 * LANES + w] = turn[2][0]
+        work[TURN + 7 * LANES + w] = turn[2][1]
+        work[TURN + 8 * LANES + w] = turn[2][2]
+        work[OMEGA + w] = omega[0]
+        work[OMEGA + LANES + w] = omega[1]
+        work[OMEGA + 2 * LANES + w] = omega[2]
+        work[RATES + w] = rates[0]
+        work[RATES + LANES + w] = rates[1]
+        work[RATES + 2 * LANES + w] = rates[2]
+    for k in range(3 * LANES):
+        work[POSITION + k] = y[k]
+        work[VELOCITY + k] = y[6 * LANES + k]
+
+
+def cables_elastic(i: int, y: Array, command: Array, own: Array, work: Array) -> None:
+    """Eqs. 9 to 16 for cable i."""
+    mid_span, mid_span_rate = lane_row(y, 12 + i), lane_row(y, 12 + CABLES + i)
+    for w in range(LANES):
+        work[MID_SPAN + w] = mid_span[w]
+        work[MID_SPAN_RATE + w] = mid_span_rate[w]
+        work[ELONGATION + w] = 0.0
+        work[ELONGATION_RATE + w] = 0.0
+    if command.shape[0] > WRENCH:
+        spread = 1 if command.shape[1] > 1 else 0
+        for w in range(LANES):
+            work[ELONGATION + w] = command[WRENCH + i, w * spread]
+            work[ELONGATION_RATE + w] = command[WRENCH + CABLES + i, w * spread]
+    for w in range(LANES):
+        turn = (
+            (work[TURN + w], work[TURN + LANES + w], work[TURN + 2 * LANES + w]),
+            (work[TURN + 3 * LANES + w], work[TURN + 4 * LANES + w], work[TURN + 5 * LANES + w]),
+            (work[TURN + 6 * LANES + w], work[TURN + 7 * LANES + w], work[TURN + 8 * LANES + w]),
+        )
+        base = (own[BASE + w], own[BASE + LANES + w], own[BASE + 2 * LANES + w])
+        anchor = (own[ANCHOR + w], own[ANCHOR + LANES + w], own[ANCHOR + 2 * LANES + w])
+        position = (
+            work[POSITION + w],
+            work[POSITION + LANES + w],
+            work[POSITION + 2 * LANES + w],
+        )
+        velocity = (
+            work[VELOCITY + w],
+            work[VELOCITY + LANES + w],
+            work[VELOCITY + 2 * LANES + w],
+        )
+        omega = (work[OMEGA + w], work[OMEGA + LANES + w], work[OMEGA + 2 * LANES + w])
+        arm = transform(turn, anchor)
+        length, direction = cable_line(base, position, arm)
+        axial_velocity = length_rate(direction, arm, velocity, omega)
+        around = cross(omega, arm)
+        elongation = length - own[REST_LENGTH + w] - work[ELONGATION + w]
+        elastic = tension(
+            own[PRETENSION + w],
+            own[STIFFNESS + w],
+            elongation,
+            work[MID_SPAN + w],
+            length,
+        )
+        work[ARM + w] = arm[0]
+        work[ARM + LANES + w] = arm[1]
+        work[ARM + 2 * LANES + w] = arm[2]
+        work[DIRECTION + w] = direction[0]
+        work[DIRECTION + LANES + w] = direction[1]
+        work[DIRECTION + 2 * LANES + w] = direction[2]
+        work[LENGTH + w] = length
+        work[ELONGATION + w] = elongation
+        work[ELONGATION_RATE + w] = axial_velocity - work[ELONGATION_RATE + w]
+        work[AXIAL_VELOCITY + w] = axial_velocity
+        work[ANCHOR_VELOCITY + w] = velocity[0] + around[0]
+        work[ANCHOR_VELOCITY + LANES + w] = velocity[1] + around[1]
+        work[ANCHOR_VELOCITY + 2 * LANES + w] = velocity[2] + around[2]
+        work[ELASTIC + w] = elastic
+        work[PULL + w] = 0.0
+        work[BEHIND + w] = 0.0
+
+
+def take_up(work: Array) -> None:
+    """The whole tension, and what it does to the platforms."""
+    for w in range(LANES):
+        pull = max(work[ELASTIC + w] + work[PULL + w], 0.0)
+        arm = (work[ARM + w], work[ARM + LANES + w], work[ARM + 2 * LANES + w])
+        direction = (
+            work[DIRECTION + w],
+            work[DIRECTION + LANES + w],
+            work[DIRECTION + 2 * LANES + w],
+        )
+        lever = cross(arm, direction)
+        work[PULL + w] = pull
+        work[FORCE + w] += pull * direction[0]
+        work[FORCE + LANES + w] += pull * direction[1]
+        work[FORCE + 2 * LANES + w] += pull * direction[2]
+        work[MOMENT + w] += pull * lever[0]
+        work[MOMENT + LANES + w] += pull * lever[1]
+        work[MOMENT + 2 * LANES + w] += pull * lever[2]
+
+
+def vibrate(i: int, own: Array, work: Array, f: Array) -> None:
+    """Eq. 17 for cable i."""
+    for w in range(LANES):
+        work[ACCELERATION + w] = transverse_acceleration(
+            work[MID_SPAN + w],
+            work[MID_SPAN_RATE + w],
+            work[PULL + w],
+            work[AXIAL_VELOCITY + w],
+            work[LENGTH + w],
+            own[LINE_DENSITY + w],
+            own[DAMPING + w],
+        )
+    rate, acceleration_ = lane_row(f, 12 + i), lane_row(f, 12 + CABLES + i)
+    for w in range(LANES):
+        rate[w] = work[MID_SPAN_RATE + w]
+        acceleration_[w] = work[ACCELERATION + w]
+
+
+def accelerate(own: Array, work: Array) -> None:
+    """Eq. 2 for all platforms."""
+    for w in range(LANES):
+        angles = (
+            work[ANGLES + w],
+            work[ANGLES + LANES + w],
+            work[ANGLES + 2 * LANES + w],
+            work[ANGLES + 3 * LANES + w],
+            work[ANGLES + 4 * LANES + w],
+            work[ANGLES + 5 * LANES + w],
+        )
+        inertia = (
+            (own[INERTIA + w], own[INERTIA + LANES + w], own[INERTIA + 2 * LANES + w]),
+            (
+                own[INERTIA + 3 * LANES + w],
+                own[INERTIA + 4 * LANES + w],
+                own[INERTIA + 5 * LANES + w],
+            ),
+            (
+                own[INERTIA + 6 * LANES + w],
+                own[INERTIA + 7 * LANES + w],
+                own[INERTIA + 8 * LANES + w],
+            ),
+        )
+        inverse = (
+            (
+                own[INVERSE_INERTIA + w],
+                own[INVERSE_INERTIA + LANES + w],
+                own[INVERSE_INERTIA + 2 * LANES + w],
+            ),
+            (
+                own[INVERSE_INERTIA + 3 * LANES + w],
+                own[INVERSE_INERTIA + 4 * LANES + w],
+                own[INVERSE_INERTIA + 5 * LANES + w],
+            ),
+            (
+                own[INVERSE_INERTIA + 6 * LANES + w],
+                own[INVERSE_INERTIA + 7 * LANES + w],
+                own[INVERSE_INERTIA + 8 * LANES + w],
+            ),
+        )
+        linear, angular = acceleration(
+            own[MASS + w],
+            inertia,
+            inverse,
+            angles,
+            (work[RATES + w], work[RATES + LANES + w], work[RATES + 2 * LANES + w]),
+            (work[FORCE + w], work[FORCE + LANES + w], work[FORCE + 2 * LANES + w]),
+            (work[MOMENT + w], work[MOMENT + LANES + w], work[MOMENT + 2 * LANES + w]),
+        )
+        work[ACCELERATION + w] = linear[0]
+        work[ACCELERATION + LANES + w] = linear[1]
+        work[ACCELERATION + 2 * LANES + w] = linear[2]
+        work[ACCELERATION + 3 * LANES + w] = angular[0]
+        work[ACCELERATION + 4 * LANES + w] = angular[1]
+        work[ACCELERATION + 5 * LANES + w] = angular[2]
+
+
+def lane_derivative(y: Array, command: Array, q: Array, extras: Any, work: Array, f: Array) -> None:
+    """The right-hand side of Eq. 18 for all lanes.
+
+    Parameters
+    ----------
+    y
+        States, shape (s * LANES,).
+    command
+        The drive, shape (6 or 22, 1 or LANES).
+    q
+        The machines, see `model.library.lanes`.
+    extras
+        An `Extras`; of `values`, the lanes have their own in `q`.
+    work
+        Room to work in, shape (WORK,).
+    f
+        Filled with the derivatives, shape (s * LANES,).
+    """
+    stride = (q.size - PLATFORM) // CABLES
+    platform = q[CABLES * stride :]
+    locate(y, work)
+    spread = 1 if command.shape[1] > 1 else 0
+    for k in range(WRENCH):
+        for w in range(LANES):
+            work[FORCE + k * LANES + w] = command[k, w * spread]
+    for w in range(LANES):
+        work[FORCE + 2 * LANES + w] -= platform[MASS + w] * platform[GRAVITY + w]
+    for k in range(STATES * LANES, y.size):
+        f[k] = 0.0
+    for i in range(CABLES):
+        own = q[i * stride : (i + 1) * stride]
+        cables_elastic(i, y, command, own, work)
+        if extras is not None:
+            lane_pull(i, extras.on[i], extras.offset, extras.carrier, own, y, work)
+        take_up(work)
+        vibrate(i, own, work, f)
+        if extras is not None:
+            lane_rates(i, extras.on[i], extras.offset, extras.carrier, own, y, work, f)
+    if extras is not None:
+        lane_wrench(extras.on[0], q, y, work)
+    accelerate(platform, work)
+    for k in range(3 * LANES):
+        f[k] = work[VELOCITY + k]
+        f[3 * LANES + k] = work[RATES + k]
+    for k in range(6 * LANES):
+        f[6 * LANES + k] = work[ACCELERATION + k]
+
+
+def lane_advance(
+    start: Array, step_s: float, weights: Array, rates: Array, count: int, result: Array
+) -> None:
+    """Fill `result` with start + step_s * (weights . rates), over the first `count` stages."""
+    for k in range(start.size):
+        result[k] = start[k]
+    for stage in range(count):
+        factor = step_s * weights[stage]
+        if factor != 0.0:
+            rate = rates[stage]
+            for k in range(start.size):
+                result[k] += factor * rate[k]
+
+
+def keep(y: Array, trajectory: Array, row: int) -> None:
+    """Store the states of all lanes, each lane's together."""
+    for w in range(LANES):
+        for k in range(trajectory.shape[2]):
+            trajectory[w, row, k] = y[k * LANES + w]
+
+
+def lay_down(
+    y: Array,
+    limit: Array,
+    point: int,
+    blown_point: NDArray[np.int64],
+    culprit: NDArray[np.int64],
+) -> None:
+    """Note which lanes blew up, and let them lie still: nothing more is asked of them."""
+    beyond = 0
+    for k in range(y.size):
+        beyond += 0 if abs(y[k]) <= limit[k] else 1
+    if beyond == 0:
+        return
+    for w in range(LANES):
+        for k in range(y.size // LANES):
+            at = k * LANES + w
+            if culprit[w] < 0 and not abs(y[at]) <= limit[at]:
+                culprit[w], blown_point[w] = k, point
+        if culprit[w] >= 0:
+            for k in range(y.size // LANES):
+                y[k * LANES + w] = 0.0
+
+
+def integrate_lanes(
+    y: Array,
+    step_s: Array,
+    drive: Array,
+    jump_point: int,
+    jump: Array,
+    first_row: NDArray[np.int64],
+    inside: NDArray[np.int64],
+    inside_weights: Array,
+    limit: Array,
+    stage_weights: Array,
+    step_weights: Array,
+    q: Array,
+    extras: Any,
+    trajectory: Array,
+    blown_point: NDArray[np.int64],
+    culprit: NDArray[np.int64],
+    before: int,
+    to_end: bool,
+) -> None:
+    """As `model.kernel.integrate`, for `LANES` simulations on the same steps.
+
+    Parameters
+    ----------
+    y, jump, limit
+        As there, for each lane, shape (s * LANES,).
+    step_s, jump_point, first_row, inside, inside_weights, stage_weights, step_weights
+        As there.
+    drive
+        Shape (n, stages, 6 or 22, 1 or LANES): one for all, or each its own.
+    q, extras
+        The machines and the effects that are on in any of them.
+    trajectory
+        Filled, shape (LANES, rows, s).
+    blown_point, culprit
+        Filled with where each lane blew up, and by which state; -1 for none; shape (LANES,).
+    before
+        Steps taken by earlier calls: a run may come in parts.
+    to_end
+        Whether the last point is the end of the run: else the next call treats it.
+    """
+    stages, needed = step_weights.size, stage_weights.shape[0]
+    rates = np.empty((needed, y.size))
+    trial = np.empty(y.size)
+    work = np.empty(WORK)
+    steps = step_s.size
+    for point in range(steps + 1 if to_end else steps):
+        if point == jump_point:
+            for k in range(y.size):
+                y[k] += jump[k]
+        lay_down(y, limit, before + point, blown_point, culprit)
+        first, last = first_row[point], first_row[point + 1]
+        if first < last and inside[first] < 0:
+            keep(y, trajectory, first)
+            first += 1
+        if point == steps:
+            break
+        h = step_s[point]
+        for stage in range(stages):
+            lane_advance(y, h, stage_weights[stage], rates, stage, trial)
+            lane_derivative(trial, drive[point, stage], q, extras, work, rates[stage])
+        if first < last:
+            for stage in range(stages, needed):
+                lane_advance(y, h, stage_weights[stage], rates, stage, trial)
+                lane_derivative(trial, drive[point, stage], q, extras, work, rates[stage])
+            for row in range(first, last):
+                weights = inside_weights[inside[row]]
+                lane_advance(y, h, weights, rates, needed, trial)
+                keep(trial, trajectory, row)
+        lane_advance(y, h, step_weights, rates, stages, y)
+
+
+def observe_lanes(states: Array, drive: Array, q: Array, extras: Any, cables_out: Array) -> None:
+    """As `model.kernel.observe`, for all lanes.
+
+    Parameters
+    ----------
+    states
+        Shape (LANES, n, s).
+    drive
+        Shape (n or 1, 6 or 22, 1 or LANES).
+    q, extras
+        The machines and the effects that are on in any of them.
+    cables_out
+        Filled with L_i, Delta L_i, v_yi, the tension at the anchor and behind the pulley, shape
+        (LANES, 5, n, 8).
+    """
+    work = np.empty(WORK)
+    stride = (q.size - PLATFORM) // CABLES
+    y = np.empty(states.shape[2] * LANES)
+    for row in range(states.shape[1]):
+        for k in range(states.shape[2]):
+            for w in range(LANES):
+                y[k * LANES + w] = states[w, row, k]
+        command = drive[min(row, drive.shape[0] - 1)]
+        locate(y, work)
+        for i in range(CABLES):
+            own = q[i * stride : (i + 1) * stride]
+            cables_elastic(i, y, command, own, work)
+            if extras is not None:
+                lane_pull(i, extras.on[i], extras.offset, extras.carrier, own, y, work)
+            take_up(work)
+            for w in range(LANES):
+                cables_out[w, 0, row, i] = work[LENGTH + w]
+                cables_out[w, 1, row, i] = work[ELONGATION + w]
+                cables_out[w, 2, row, i] = work[AXIAL_VELOCITY + w]
+                cables_out[w, 3, row, i] = work[PULL + w]
+                cables_out[w, 4, row, i] = max(work[PULL + w] - work[BEHIND + w], 0.0)

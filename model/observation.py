@@ -1,0 +1,103 @@
+"""`observe`: what cells and camera would report of a simulation."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.library.effect import Acts
+from model.library.selection import ActiveEffect, those_that_act
+from model.simulation import Simulation
+
+Array = NDArray[np.float64]
+Look = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Tensions and poses as recorded; N, m and rad.
+
+    Parameters
+    ----------
+    tension_t_s
+        Times of the tensions, shape (n,), or (n, 8) where the bus is polled in turn.
+    tension_n
+        Shape (n, 8).
+    pose_t_s
+        Stamps of the frames, shape (m,).
+    pose
+        Shape (m, 6).
+    """
+
+    tension_t_s: Array
+    tension_n: Array
+    pose_t_s: Array
+    pose: Array
+
+
+def observe(
+    simulation: Simulation,
+    effects: Sequence[ActiveEffect] | None = None,
+    *,
+    tension_t_s: Array | None = None,
+    pose_t_s: Array | None = None,
+) -> Observation:
+    """What cells and camera would report.
+
+    Parameters
+    ----------
+    simulation
+        What happened.
+    effects
+        Those of cells, camera and clocks act here, in the order from the physical quantity to the
+        record; others are passed over. Default: those the simulation was given.
+    tension_t_s
+        When the cells are read, shape (n,), or (n, 8) each at its own times; default: at each row
+        of the simulation.
+    pose_t_s
+        Stamps of the frames, shape (m,); default: at each row of the simulation.
+
+    Returns
+    -------
+    Observation
+        Without noise. Before and after the simulation, its ends.
+    """
+    chosen = those_that_act(simulation.effects if effects is None else effects)
+    chain = sorted(chosen, key=lambda one: one.effect.order)
+    tension = simulation.tension_n
+    for one in chain:
+        if one.effect.acts is Acts.CELL and one.effect.measure is not None:
+            tension = one.effect.measure(simulation.t_s, tension, **one.columns())
+    look = _camera(simulation)
+    for one in chain:
+        if one.effect.acts in (Acts.CAMERA, Acts.CLOCK) and one.effect.measure is not None:
+            look = one.effect.measure(look, **one.numbers())
+    read_s = simulation.t_s if tension_t_s is None else np.asarray(tension_t_s, dtype=float)
+    stamp_s = simulation.t_s if pose_t_s is None else np.asarray(pose_t_s, dtype=float)
+    return Observation(read_s, _read(simulation.t_s, tension, read_s), stamp_s, look(stamp_s))
+
+
+def _camera(simulation: Simulation) -> Look:
+    """The pose at any time, by a spline through the rows; at a row, the row itself."""
+    from scipy.interpolate import CubicSpline
+
+    time_s = simulation.t_s
+    spline = CubicSpline(time_s, simulation.pose)
+
+    def look(stamp_s: Array) -> Array:
+        at_s = np.clip(stamp_s, time_s[0], time_s[-1])
+        pose = np.asarray(spline(at_s), dtype=np.float64)
+        row = np.clip(np.searchsorted(time_s, at_s), 0, len(time_s) - 1)
+        exact = time_s[row] == at_s
+        pose[exact] = simulation.pose[row[exact]]
+        return pose
+
+    return look
+
+
+def _read(time_s: Array, tension: Array, read_s: Array) -> Array:
+    """Straight lines between rows: tensions may jump, and a spline would ring."""
+    at_s = np.broadcast_to(read_s[:, None] if read_s.ndim == 1 else read_s, (len(read_s), 8))
+    columns = [np.interp(at_s[:, i], time_s, tension[:, i]) for i in range(tension.shape[1])]
+    return np.stack(columns, axis=-1)

@@ -1,0 +1,269 @@
+"""One simulation as asked for, made ready for either kernel."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from inspect import signature
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdpr8.errors import UsageError
+from cdpr8.rigfile.schema import Excitation, Rig
+from model.drive import drive_table
+from model.extras import pack, state_count
+from model.kernel import PLATFORM_STATES, STATES, Extras
+from model.library.effect import Acts
+from model.library.selection import ActiveEffect, of_rig, those_that_act
+from model.machine import Machine
+from model.method import Method, find_method
+from model.motion import Motion, RampedSine
+from model.steps import Steps, divide
+
+Array = NDArray[np.float64]
+
+STABLE_STEP = 2.5
+"""Step times decay that an explicit method follows: rk4 2.8, dop853 about 6."""
+
+SHORTEST_STEP_S = 2e-5
+"""Steeper friction than this can follow trembles at rest, by less than its own switch."""
+
+DRIVES = ("wrench", "winch")
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """What is added to the state when the motion starts (Section 4.1 of the paper).
+
+    Parameters
+    ----------
+    platform_offset_m
+        X_p0 in O-XYZ, m.
+    cable_offset_m
+        X_w0 at mid-span: of every cable, or of each, shape (8,); m.
+    """
+
+    platform_offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    cable_offset_m: float | tuple[float, ...] = 0.0
+
+    @classmethod
+    def from_excitation(cls, excitation: Excitation) -> Self:
+        """The disturbance a rig file's [excitation] asks for."""
+        return cls(excitation.platform_offset_m, excitation.cable_offset_m)
+
+
+NO_DISTURBANCE = Disturbance()
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be simulated; the arguments of `model.simulate` that are not its method.
+
+    Parameters
+    ----------
+    rig
+        The machine.
+    excitation
+        The commanded motion and the disturbances; default: the rig's own.
+    motion
+        Any other motion, in place of the excitation's.
+    effects
+        Left-out effects; default: those the rig file has switched on.
+    excitation_effect
+        False sets X_w = 0 in Eq. 18.
+    disturbance
+        Acts when the motion starts. Default: the excitation's with excitation effect, none
+        without.
+    nominal
+        The machine the drive was made for; default: `rig`.
+    drive
+        "wrench" or "winch"; default: the excitation's.
+    """
+
+    rig: Rig
+    excitation: Excitation | None = None
+    motion: Motion | None = None
+    effects: Sequence[ActiveEffect] | None = None
+    excitation_effect: bool = True
+    disturbance: Disturbance | None = None
+    nominal: Rig | None = None
+    drive: str | None = None
+    acting: tuple[ActiveEffect, ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        effects = of_rig(self.rig.physics) if self.effects is None else self.effects
+        object.__setattr__(self, "acting", those_that_act(effects))
+        if self.drive_kind not in DRIVES:
+            raise UsageError(f"no drive {self.drive_kind!r}", allowed=", ".join(DRIVES))
+
+    @property
+    def asked(self) -> Excitation:
+        """The excitation, the rig's own where none was given."""
+        return self.rig.excitation if self.excitation is None else self.excitation
+
+    @property
+    def drive_kind(self) -> str:
+        """The word "wrench" or "winch"."""
+        return self.asked.drive if self.drive is None else self.drive
+
+    @cached_property
+    def nominal_machine(self) -> Machine:
+        """The machine the drive was made for."""
+        return Machine.from_rig(self.nominal or self.rig)
+
+    @cached_property
+    def machine(self) -> Machine:
+        """The plant: the rig's, with the parameters that effects move."""
+        machine = Machine.from_rig(self.rig)
+        for one in self.acting:
+            if one.effect.change is not None:
+                machine = one.effect.change(machine, **one.columns())
+        return machine
+
+    @cached_property
+    def command(self) -> Motion:
+        """X*, as commanded."""
+        return RampedSine.from_excitation(self.asked) if self.motion is None else self.motion
+
+    @cached_property
+    def driven(self) -> Motion:
+        """X* as the drive makes it."""
+        motion = self.command
+        for one in self.acting:
+            if one.effect.command is not None:
+                motion = one.effect.command(motion, **one.numbers())
+        return motion
+
+    @cached_property
+    def extras(self) -> Extras | None:
+        """The effects in the kernel."""
+        return pack(self.machine, self.acting)
+
+    @property
+    def states(self) -> int:
+        """Length of the state vector."""
+        return state_count(self.acting)
+
+    @property
+    def cells_behind_pulley(self) -> NDArray[np.bool_]:
+        """Which cells sit behind their pulley, shape (8,)."""
+        return np.array([cable.cell != "platform" for cable in self.rig.cable])
+
+    def step_s(self, method: Method) -> float:
+        """The longest step a method should take, by the highest tone and the sharpest switch."""
+        machine = self.machine
+        highest = max(machine.cable_tones_hz.max(), machine.platform_tones_hz.max())
+        switches = [
+            one.effect.longest_step_s
+            for one in self.acting
+            if one.effect.longest_step_s is not None
+        ]
+        return min([method.step_s(float(highest)), *switches, self._stable_step_s()])
+
+    def _stable_step_s(self) -> float:
+        """The longest step that follows the steepest friction down to rest."""
+        machine = self.machine
+        steepest = np.zeros(machine.cables)
+        for one in self.acting:
+            if one.effect.steepest is not None:
+                known = dict(one.columns()) | {"pretension": machine.pretension}
+                wanted = signature(one.effect.steepest).parameters
+                steepest += one.effect.steepest(**{name: known[name] for name in wanted})
+        decay = machine.fastest_decay_1_per_s(steepest)
+        return max(STABLE_STEP / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
+
+    def steps(self, method: Method, output_rate_hz: float, step_s: float | None) -> Steps:
+        """The steps to take."""
+        longest_step_s = self.step_s(method) if step_s is None else step_s
+        return divide(self.driven, output_rate_hz, longest_step_s, join=method.inside)
+
+    def drive_at_stages(self, method: Method, steps: Steps) -> Array:
+        """The drive's table; kept for the next task with the same drive."""
+        return _cached_table(self.drive_key(method, steps))
+
+    def drive_key(self, method: Method, steps: Steps) -> "DriveKey":
+        """Equal for tasks that share their drive's table."""
+        return DriveKey(self.nominal_machine, self.driven, steps, method.name, self.drive_kind)
+
+    def drive_at(self, time_s: Array, within_s: Array) -> Array:
+        """The drive at any times; see `model.drive.drive_table`."""
+        return drive_table(self.nominal_machine, self.driven, time_s, within_s, self.drive_kind)
+
+    def drive_at_outputs(self, steps: Steps) -> Array:
+        """The drive at each output: what a winch has paid out; else one row that is not read."""
+        if self.drive_kind == "wrench":
+            return np.zeros((1, 6))
+        time_s = steps.output_s[:, None]
+        table = drive_table(self.nominal_machine, self.driven, time_s, time_s, self.drive_kind)
+        return np.ascontiguousarray(table[:, 0])
+
+    def initial(self, steps: Steps) -> Array:
+        """The state before the first point."""
+        if not steps.jump_point:
+            return np.zeros(self.states)
+        return self._state_at(0.0, -1.0)
+
+    def jump(self, steps: Steps) -> Array:
+        """What the state gains when the motion starts: any jump of X* and X*', X_p0 and X_w0."""
+        at, middle_s = steps.jump_point, steps.middle_s[:, 0]
+        start_s = self.driven.start_s
+        jump = self._state_at(start_s, middle_s[min(at, len(middle_s) - 1)])
+        if at > 0:
+            jump -= self._state_at(start_s, middle_s[at - 1])
+        disturbance = self._disturbance
+        jump[0:3] += disturbance.platform_offset_m
+        if self.excitation_effect:
+            cables = (STATES - PLATFORM_STATES) // 2
+            jump[PLATFORM_STATES : PLATFORM_STATES + cables] += disturbance.cable_offset_m
+        return jump
+
+    @property
+    def _disturbance(self) -> Disturbance:
+        if self.disturbance is not None:
+            return self.disturbance
+        if self.excitation_effect:
+            return Disturbance.from_excitation(self.asked)
+        return NO_DISTURBANCE
+
+    def _state_at(self, time_s: float, within_s: float) -> Array:
+        """The state of a platform that follows X*, cables at rest."""
+        pose, rate, _ = self.driven.at(np.array(time_s), np.array(within_s))
+        state = np.zeros(self.states)
+        state[0:6], state[6:12] = pose, rate
+        return state
+
+
+def is_measurement(effect: ActiveEffect) -> bool:
+    """Whether an effect changes what is recorded, not what happens."""
+    return effect.effect.acts in (Acts.CELL, Acts.CAMERA, Acts.CLOCK)
+
+
+@dataclass(frozen=True)
+class DriveKey:
+    """All that a drive's table depends on, told apart by value."""
+
+    machine: Machine
+    motion: Motion
+    steps: Steps
+    method: str
+    kind: str
+
+    def _value(self) -> tuple[object, ...]:
+        numbers = b"".join(np.ascontiguousarray(one).tobytes() for one in self.machine.plant())
+        return numbers, self.motion, self.steps.point_s.tobytes(), self.method, self.kind
+
+    def __hash__(self) -> int:
+        return hash(self._value())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, DriveKey) and self._value() == other._value()
+
+
+@lru_cache(maxsize=4)
+def _cached_table(key: DriveKey) -> Array:
+    """Four tables, some megabytes: a fit asks thousands of times for one of them."""
+    nodes = find_method(key.method).nodes
+    return drive_table(
+        key.machine, key.motion, key.steps.stage_s(nodes), key.steps.middle_s, key.kind
+    )
