@@ -63,8 +63,8 @@ def test_a_bare_number_takes_the_default_sigma_of_its_kind() -> None:
 
 def test_a_parameter_may_say_how_well_it_is_known_and_from_where() -> None:
     text = packaged_rig_path().read_text()
-    row = 'mass_kg = {value = 0.5056, sigma = 0.0, unit = "kg", source = "kitchen scales"}'
-    rig = parse_rig(text.replace("mass_kg = 0.5056", row), "rig.toml", Path())
+    row = 'mass_kg = {value = 0.470878, sigma = 0.0, unit = "kg", source = "kitchen scales"}'
+    rig = parse_rig(text.replace("mass_kg = 0.470878", row), "rig.toml", Path())
     assert rig.platform.mass_kg.sigma == 0.0
     assert rig.platform.mass_kg.source == "kitchen scales"
 

@@ -99,7 +99,7 @@ def test_a_bad_input_gets_one_message(
 
 
 def test_a_wrong_rig_file_is_refused(capsys: pytest.CaptureFixture[str], rig_file: Path) -> None:
-    rig_file.write_text(rig_file.read_text().replace("mass_kg = 0.5056", "mass_kg = -0.5056"))
+    rig_file.write_text(rig_file.read_text().replace("mass_kg = 0.470878", "mass_kg = -0.470878"))
     code, _, err = run(capsys, "simulate", "--rig", str(rig_file))
     assert code == 3
     assert "mass_kg" in err
