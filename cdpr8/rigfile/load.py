@@ -71,6 +71,27 @@ def parse_rig(text: str, name: str, folder: Path) -> Rig:
     return rig
 
 
+def files_beside(text: str, folder: Path) -> dict[str, bytes]:
+    """The files that a sound rig file names, so that a run can carry them beside it.
+
+    Parameters
+    ----------
+    text
+        The rig file.
+    folder
+        Where it stands.
+
+    Returns
+    -------
+    dict
+        File name -> its bytes: the intrinsics file, or nothing.
+    """
+    intrinsics = tomllib.loads(text).get("camera", {}).get("intrinsics")
+    if not isinstance(intrinsics, str):
+        return {}
+    return {intrinsics: (folder / intrinsics).read_bytes()}
+
+
 def _with_intrinsics_file(rig: Rig, folder: Path, name: str) -> Rig:
     """The rig with the intrinsics file, where it names one, read into it."""
     if rig.camera is None or not isinstance(rig.camera.intrinsics, str):

@@ -1,7 +1,7 @@
 """The rig file as data: one class a section (design, section 2). Loading is in `load`."""
 
 from enum import StrEnum
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -130,7 +130,9 @@ class Camera(Section):
     source: str = "simulated"
     fps: float = Field(default=16.0, gt=0.0)
     exposure_s: float = Field(default=0.005, gt=0.0)
-    intrinsics: Intrinsics | str = Field(description="a table, or a file beside the rig file")
+    intrinsics: Intrinsics | Annotated[str, Field(pattern=r"^[^/\\\\]+$")] = Field(
+        description="a table, or the name of a file beside the rig file"
+    )
     pose: CameraPose | None = Field(
         default=None, description="left out: taken from the frames at rest"
     )

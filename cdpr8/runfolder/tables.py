@@ -107,7 +107,7 @@ TENSION = Table(
     (
         Column("t_s", "number", "estimated sampling instant, tension clock", "s", digits=6),
         Column("cable", "integer", "cable number, 1 to 8"),
-        Column("digits", "integer", "raw value of the amplifier, never altered"),
+        Column("digits", "integer", "raw value of the amplifier, never altered", optional=True),
         Column("tension_n", "number", "digits, scaled: positive pulls", "N", digits=6),
         Column("status", "integer", "status bits, see below"),
         Column("request_s", "number", "when the value was asked for", "s", True, 6),

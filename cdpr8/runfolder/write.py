@@ -65,6 +65,8 @@ class RunWriter:
         Written and synced to disk before this returns.
     rig_text
         The rig file as it was.
+    beside_rig
+        Files that the rig file names (`cdpr8.rigfile.files_beside`), so that the run stands alone.
 
     Raises
     ------
@@ -72,7 +74,13 @@ class RunWriter:
         The folder holds something already, or cannot be written.
     """
 
-    def __init__(self, folder: Path, start: StartRecord, rig_text: str) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        start: StartRecord,
+        rig_text: str,
+        beside_rig: Mapping[str, bytes] | None = None,
+    ) -> None:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             if any(folder.iterdir()):
@@ -82,6 +90,8 @@ class RunWriter:
                     remedy="choose another name",
                 )
             self.folder = folder
+            for name, content in (beside_rig or {}).items():
+                (folder / name).write_bytes(content)
             _write_synced(folder / "rig.toml", rig_text)
             _write_synced(folder / "start.json", _as_json(start))
             self.tension = TableWriter(folder, TENSION)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cdpr8.errors import DataError
-from cdpr8.rigfile import Excitation, packaged_rig_path
+from cdpr8.rigfile import Excitation, files_beside, packaged_rig_path
 from cdpr8.runfolder import (
     CameraStart,
     ClockAnchor,
@@ -209,3 +209,21 @@ def test_a_written_run_obeys_the_schemas(tmp_path: Path) -> None:
     rows = json.loads(load_run(tmp_path / "run").tension.to_json(orient="records"))
     for row in rows:
         jsonschema.validate(row, schemas["tension.row.schema.json"])
+
+
+def test_a_run_carries_the_intrinsics_file_that_its_rig_names(tmp_path: Path) -> None:
+    text = packaged_rig_path().read_text()
+    first, last = text.index("[camera.intrinsics]"), text.index("[camera.pose]")
+    text = text[:first].replace("[camera]\n", '[camera]\nintrinsics = "lens.yml"\n') + text[last:]
+    (tmp_path / "lens.yml").write_text(
+        "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 1024\n"
+        "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+        "   data: [ 1500., 0., 640., 0., 1500., 512., 0., 0., 1. ]\n"
+        "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n"
+        "   data: [ 0., 0., 0., 0., 0. ]\n"
+    )
+    RunWriter(tmp_path / "run", start_record(), text, files_beside(text, tmp_path)).close()
+    camera = load_run(tmp_path / "run").rig.camera
+    assert camera is not None
+    assert not isinstance(camera.intrinsics, str)
+    assert camera.intrinsics.fx_px == 1500.0
