@@ -9,14 +9,26 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vision.board_file import load_board
     from vision.camera_model import CameraModel
+    from vision.exposure import corrected_amplitude, exposure_attenuation
     from vision.plate import Plate, Singles
     from vision.track import track_run, track_video
 
-__all__ = ["CameraModel", "Plate", "Singles", "load_board", "track_run", "track_video"]
+__all__ = [
+    "CameraModel",
+    "Plate",
+    "Singles",
+    "corrected_amplitude",
+    "exposure_attenuation",
+    "load_board",
+    "track_run",
+    "track_video",
+]
 
 _HOMES = {
     "CameraModel": "vision.camera_model",
     "Plate": "vision.plate",
+    "corrected_amplitude": "vision.exposure",
+    "exposure_attenuation": "vision.exposure",
     "Singles": "vision.plate",
     "load_board": "vision.board_file",
     "track_run": "vision.track",

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from vision.camera_model import CameraModel
 from vision.detect import CORNER_PRECISION_PX, Markers
+from vision.local_lens import local_lenses, through_lenses
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -90,12 +91,6 @@ class _Sides:
     used: Array  # (m, k), 1 or 0
     reach: tuple[Array, Array]  # (m, 1) inwards and outwards
 
-    def near(self, distance: Array) -> Array:
-        """The pixels used, given how far outside the line each is: 1 or 0, (m, k)."""
-        inward, outward = self.reach
-        band: Array = self.used * (distance >= -inward) * (distance <= outward)
-        return band
-
 
 @dataclass(frozen=True)
 class _Lines:
@@ -164,7 +159,7 @@ def _sides(image: Image, corners: Array, ideal: Array, camera: CameraModel, modu
     inside = (x >= 0) & (x < camera.width_px) & (y >= 0) & (y < camera.height_px)
     x, y = np.clip(x, 0, camera.width_px - 1), np.clip(y, 0, camera.height_px - 1)
     level = image[y.astype(int), x.astype(int)].astype(float)
-    seen = camera.undistort(np.column_stack([x.ravel(), y.ravel()])).reshape(*x.shape, 2)
+    seen = _without_lens(np.stack([x, y], axis=-1), corners, camera)
 
     start, end = ideal.reshape(-1, 2), np.roll(ideal, -1, axis=1).reshape(-1, 2)
     length = np.linalg.norm(end - start, axis=1)
@@ -180,33 +175,37 @@ def _sides(image: Image, corners: Array, ideal: Array, camera: CameraModel, modu
     )
 
 
+def _without_lens(pixels: Array, corners: Array, camera: CameraModel) -> Array:
+    """Ideal pixels of those beside the sides, (4 n, k, 2), by one cubic a marker."""
+    if not camera.distortion.any():
+        return pixels
+    middles = corners.mean(axis=1)
+    each = pixels.reshape(len(corners), -1, 2) - middles[:, None]
+    half = np.abs(corners - middles[:, None]).max(axis=(1, 2)) + OUTWARD_PX[1] + 2.0
+    return through_lenses(local_lenses(camera, middles, half), each).reshape(pixels.shape)
+
+
 def _fit(sides: _Sides) -> _Lines:
-    """Gauss-Newton on all sides at once."""
-    count = len(sides.middle)
-    near = sides.near(sides.e)
-    inner, outer = near * (sides.e < -0.5), near * (sides.e > 0.5)
-    dark = (inner * sides.level).sum(axis=1) / np.maximum(inner.sum(axis=1), 1.0)
-    bright = (outer * sides.level).sum(axis=1) / np.maximum(outer.sum(axis=1), 1.0)
-    zero = np.zeros(count)
+    """Gauss-Newton on each side."""
+    from vision.edge_kernel import fit_edges
+
     usual = np.array([0.0, 0.0, 0.0, 0.0, USUAL_BLUR_PX[0], USUAL_GRADIENT_PER_PX[0]])
     weight = np.array([1e-9, 1e-9, 1e-9, 1e-9, USUAL_BLUR_PX[1], USUAL_GRADIENT_PER_PX[1]])
     weight[4:] = (USUAL_NOISE / weight[4:]) ** 2
-    values = np.column_stack([zero, zero, dark, bright, zero, zero]) + usual
-    for iteration in range(ITERATIONS):
-        if iteration <= 3:  # keep the band on the line until it has settled
-            distance = sides.e - values[:, :1] - values[:, 1:2] * sides.t
-            near = sides.near(distance)
-        residual, jacobian = _edge(sides, values)
-        weighted = jacobian * near[:, None]
-        normal = weighted @ jacobian.transpose(0, 2, 1) + np.diag(weight)
-        pull = np.einsum("mpk,mk->mp", weighted, residual) + weight * (usual - values)
-        values += np.clip(np.linalg.solve(normal, pull[..., None])[..., 0], *_LARGEST_STEP)
-        values[:, 4] = np.clip(values[:, 4], *BLUR_PX)
-    residual, jacobian = _edge(sides, values)
-    weighted = jacobian * near[:, None]
-    normal = weighted @ jacobian.transpose(0, 2, 1) + np.diag(weight)
-    pixels = near.sum(axis=1)
-    variance = (near * residual**2).sum(axis=1) / np.maximum(pixels - 6.0, 1.0)
+    values, normal, squares, pixels = fit_edges(
+        np.ascontiguousarray(sides.t),
+        np.ascontiguousarray(sides.e),
+        sides.level,
+        sides.used,
+        sides.reach[0][:, 0],
+        sides.reach[1][:, 0],
+        usual,
+        weight,
+        _LARGEST_STEP,
+        np.array(BLUR_PX),
+        ITERATIONS,
+    )
+    variance = squares / np.maximum(pixels - 6.0, 1.0)
     # The noise is the picture's, one for all sides; a side that fits worse has more of its own.
     variance = np.maximum(np.maximum(variance, np.median(variance)), ROUNDING_VARIANCE)
     contrast = values[:, 3] - values[:, 2]
@@ -221,35 +220,7 @@ def _fit(sides: _Sides) -> _Lines:
     return _Lines(values[:, 0], values[:, 1], covariance, good)
 
 
-_LARGEST_STEP = (
-    np.array([-0.7, -0.1, -60.0, -60.0, -0.5, -0.02]),
-    np.array([0.7, 0.1, 60.0, 60.0, 0.5, 0.02]),
-)
-
-
-def _edge(sides: _Sides, values: Array) -> tuple[Array, Array]:
-    """Residuals (m, k) and derivatives (m, 6, k) by offset, slope, dark, bright, blur, gradient."""
-    from scipy.special import ndtr
-
-    offset, slope, dark, bright, blur, gradient = (values[:, i : i + 1] for i in range(6))
-    z = (sides.e - offset - slope * sides.t) / blur
-    step: Array = ndtr(z)
-    light = 1.0 + gradient * sides.t
-    contrast = (bright - dark) * light
-    density = np.exp(-0.5 * z * z) * (1.0 / np.sqrt(2.0 * np.pi)) * contrast / blur
-    plain = dark + (bright - dark) * step
-    jacobian = np.stack(
-        [
-            -density,
-            -density * sides.t,
-            light * (1.0 - step),
-            light * step,
-            -density * z,
-            plain * sides.t,
-        ],
-        axis=1,
-    )
-    return sides.level - light * plain, jacobian
+_LARGEST_STEP = np.array([0.7, 0.1, 60.0, 60.0, 0.5, 0.02])
 
 
 def _meet(sides: _Sides, lines: _Lines) -> tuple[Array, Array, NDArray[np.bool_]]:

@@ -37,6 +37,10 @@ class Markers:
     ids: tuple[int, ...]
     corners: Array
 
+    def moved(self, by_px: tuple[int, int]) -> "Markers":
+        """The same, so many pixels to the right and down."""
+        return Markers(self.ids, self.corners + np.array(by_px, dtype=float))
+
     def of(self, wanted: tuple[int, ...]) -> "Markers":
         """Those of some ids."""
         chosen = [index for index, marker in enumerate(self.ids) if marker in wanted]

@@ -100,14 +100,14 @@ def mounting_of(rig: schema.Rig) -> Mounting:
     """
     if rig.plate is None:
         raise DataError("the rig has no [plate]", remedy="add the plate's markers and its pose")
-    normal = _unit(rig.plate.pose.normal, "plate.pose.normal")
-    x = _unit(np.cross(rig.plate.pose.up, normal), "plate.pose: up and normal")
+    normal = unit(rig.plate.pose.normal, "plate.pose.normal")
+    x = unit(np.cross(rig.plate.pose.up, normal), "plate.pose: up and normal")
     camera_rotation, camera_position = np.eye(3), np.zeros(3)
     if rig.camera is not None and rig.camera.pose is not None:
         pose = rig.camera.pose
         camera_position = np.asarray(pose.position_m, dtype=float)
-        forward = _unit(np.asarray(pose.look_at_m) - camera_position, "camera.pose.look_at_m")
-        right = _unit(np.cross(forward, pose.up), "camera.pose: up and the view")
+        forward = unit(np.asarray(pose.look_at_m) - camera_position, "camera.pose.look_at_m")
+        right = unit(np.cross(forward, pose.up), "camera.pose: up and the view")
         camera_rotation = np.column_stack([right, np.cross(forward, right), forward])
     return Mounting(
         camera_rotation,
@@ -117,7 +117,8 @@ def mounting_of(rig: schema.Rig) -> Mounting:
     )
 
 
-def _unit(vector: Sequence[float] | Array, where: str) -> Array:
+def unit(vector: Sequence[float] | Array, where: str) -> Array:
+    """A direction, of length 1; `where` names what gave it, for the message."""
     values = np.asarray(vector, dtype=float)
     length = float(np.linalg.norm(values))
     if length < 1e-9:

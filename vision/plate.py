@@ -31,6 +31,11 @@ class Plate:
         Marker ids, n of them, each once.
     corners
         Corners in the plate frame in OpenCV's order (TL, TR, BR, BL), m, shape (n, 4, 3).
+    quiet_m
+        White round each marker, where something else than a marker ends it (the black squares of
+        a ChArUco board); infinite where nothing does.
+    saddles
+        Inner corners of a ChArUco board's squares, m, shape (k, 3); None for other plates.
 
     Raises
     ------
@@ -41,6 +46,8 @@ class Plate:
     dictionary: str
     ids: tuple[int, ...]
     corners: Array
+    quiet_m: float = float("inf")
+    saddles: Array | None = None
 
     def __post_init__(self) -> None:
         check_ids(self.dictionary, self.ids, "plate")
@@ -57,6 +64,23 @@ class Plate:
                 dtype=float,
             ),
         )
+
+    @classmethod
+    def charuco(
+        cls, dictionary: str, columns: int, rows: int, square_m: float, marker_m: float
+    ) -> "Plate":
+        """The markers of a ChArUco board of so many squares, about its middle."""
+        import cv2
+
+        book = open_dictionary(dictionary, "charuco.dictionary")
+        board = cv2.aruco.CharucoBoard((columns, rows), square_m, marker_m, book)
+        corners = np.asarray(board.getObjPoints(), dtype=float).reshape(-1, 4, 3)
+        middle = np.array([columns, rows, 0.0]) * square_m / 2.0
+        upright: Array = (corners - middle) * [1.0, -1.0, 1.0]
+        ids = tuple(int(marker) for marker in np.asarray(board.getIds()).ravel())
+        inner = np.asarray(board.getChessboardCorners(), dtype=float)
+        saddles: Array = (inner - middle) * [1.0, -1.0, 1.0]
+        return cls(dictionary, ids, upright, (square_m - marker_m) / 2.0, saddles)
 
     @classmethod
     def single(cls, dictionary: str, marker: int, size_m: float) -> "Plate":

@@ -66,13 +66,35 @@ class PoseEstimate:
     ambiguous
         The corners do not decide between the two.
     from_previous
-        The previous frame did, against the smaller error.
+        Frames before (or, of a whole video, those before and after) did, against the smaller error.
+    rival
+        The pose not chosen; None where there is none.
+    lead
+        Chi-squared by which the better of the two leads; infinite where there is one.
+    misfit
+        Chi-squared of the corners per degree of freedom: over 4, plate or lens are not as stated.
+    blur_px
+        Standard deviation of the point spread where the pixels were fitted, else NaN.
     """
 
     pose: CameraPose
     ratio: float
     ambiguous: bool
     from_previous: bool
+    rival: CameraPose | None = None
+    lead: float = float("inf")
+    misfit: float = 1.0
+    blur_px: float = float("nan")
+
+    @property
+    def better(self) -> CameraPose:
+        """Of the two poses, that of the smaller error."""
+        return self.rival if self.from_previous and self.rival else self.pose
+
+    @property
+    def worse(self) -> CameraPose | None:
+        """Of the two poses, that of the larger error."""
+        return self.pose if self.from_previous else self.rival
 
 
 @dataclass(frozen=True)
@@ -109,6 +131,7 @@ def estimate_pose(
     if not fits:
         return None
     freedoms = corners.pixels.size - 6
+    misfit = fits[0].chi_squared / freedoms
     if fits[0].chi_squared > MISFIT * freedoms:
         # Bent paper, a misprint, a lens not as stated: such misses are not shared between corners
         # as noise is, so each corner is given its own, of the size that is seen.
@@ -116,18 +139,28 @@ def estimate_pose(
         corners = replace(corners, covariance=corners.covariance + miss * np.eye(8))
         fits = _fits(points, corners, camera) or fits
     best, rivals = fits[0], fits[1:]
-    rivals = [fit for fit in rivals if _angle(fit.rotation, best.rotation) > SAME_ROTATION_RAD]
+    rivals = [fit for fit in rivals if angle_of(fit.rotation, best.rotation) > SAME_ROTATION_RAD]
     # The scatter of few corners is a poor measure of their noise, so the stated one counts too.
     scale = (PRIOR_FREEDOMS + best.chi_squared) / (PRIOR_FREEDOMS + freedoms)
     if not rivals:
-        return PoseEstimate(_pose(best, scale), float("nan"), False, False)
+        return PoseEstimate(_pose(best, scale), float("nan"), False, False, misfit=misfit)
     rival = rivals[0]
     ratio = float(np.sqrt(rival.chi_squared / max(best.chi_squared, 1e-12)))
-    ambiguous = (rival.chi_squared - best.chi_squared) / scale < DECISIVE
-    chosen = best
+    lead = float((rival.chi_squared - best.chi_squared) / scale)
+    ambiguous = lead < DECISIVE
+    chosen, other = best, rival
     if ambiguous and previous is not None:
-        chosen = min((best, rival), key=lambda fit: _angle(fit.rotation, previous.rotation))
-    return PoseEstimate(_pose(chosen, scale), ratio, ambiguous, chosen is rival)
+        by_turn = sorted((best, rival), key=lambda fit: angle_of(fit.rotation, previous.rotation))
+        chosen, other = by_turn
+    return PoseEstimate(
+        _pose(chosen, scale),
+        ratio,
+        ambiguous,
+        chosen is rival,
+        _pose(other, scale),
+        lead,
+        misfit,
+    )
 
 
 def _fits(points: Array, corners: Corners, camera: CameraModel) -> list[_Fit]:
@@ -174,76 +207,37 @@ def _refine(
     camera: CameraModel,
 ) -> _Fit | None:
     """Levenberg-Marquardt on the whitened residuals."""
-    flat = points.reshape(-1, 3)
-    state = _residuals(rotation, translation, flat, corners, whiten, camera)
-    if state is None:
+    from vision.edge_kernel import pose_equations
+
+    flat = np.ascontiguousarray(points.reshape(-1, 3))
+    fixed = (
+        flat,
+        np.ascontiguousarray(corners.pixels.reshape(-1, 2)),
+        whiten,
+        camera.focal_px,
+        camera.principal_point_px,
+    )
+    rotation, translation = np.ascontiguousarray(rotation), np.ascontiguousarray(translation)
+    normal, pull, chi_squared, misses = pose_equations(rotation, translation, *fixed)
+    if not np.isfinite(chi_squared):
         return None
     damping = 1e-4
     for _ in range(ITERATIONS):
-        residual, jacobian, _ = state
-        normal = jacobian.T @ jacobian
         damped = normal + damping * np.diag(np.diag(normal))
-        step = np.asarray(np.linalg.solve(damped, jacobian.T @ residual), dtype=np.float64)
-        moved = _rotation_of(step[:3]) @ rotation, translation + step[3:]
-        tried = _residuals(*moved, flat, corners, whiten, camera)
-        if tried is None or tried[0] @ tried[0] > residual @ residual:
+        step = np.asarray(np.linalg.solve(damped, pull), dtype=np.float64)
+        moved = np.ascontiguousarray(_rotation_of(step[:3]) @ rotation), translation + step[3:]
+        tried = pose_equations(*moved, *fixed)
+        if not tried[2] <= chi_squared:
             damping *= 10.0
             if damping > 1e6:
                 break
             continue
-        gain = float(residual @ residual - tried[0] @ tried[0])
-        (rotation, translation), state = moved, tried
+        gain = chi_squared - tried[2]
+        (rotation, translation), (normal, pull, chi_squared, misses) = moved, tried
         damping = max(damping / 10.0, 1e-9)
         if gain < 1e-9:
             break
-    residual, jacobian, miss = state
-    distance = float(np.sqrt((miss**2).sum() / len(flat)))
-    return _Fit(rotation, translation, jacobian.T @ jacobian, float(residual @ residual), distance)
-
-
-def _residuals(
-    rotation: Array,
-    translation: Array,
-    flat: Array,
-    corners: Corners,
-    whiten: Array,
-    camera: CameraModel,
-) -> tuple[Array, Array, Array] | None:
-    """Whitened residuals (8 n,), their derivatives (8 n, 6), and the misses in px (4 n, 2)."""
-    turned = flat @ rotation.T
-    seen = turned + translation
-    x, y, depth = seen.T
-    if depth.min() <= 0.0:
-        return None
-    fx, fy = camera.focal_px
-    zero = np.zeros(len(flat))
-    by_place = np.stack(
-        [
-            np.column_stack([fx / depth, zero, -fx * x / depth**2]),
-            np.column_stack([zero, fy / depth, -fy * y / depth**2]),
-        ],
-        axis=1,
-    )
-    jacobian = np.concatenate([by_place @ -_cross_matrices(turned), by_place], axis=2)
-    miss = corners.pixels.reshape(-1, 2) - camera.project(seen)
-    count = len(whiten)
-    residual = np.einsum("nij,nj->ni", whiten, miss.reshape(count, 8)).ravel()
-    whitened = whiten @ jacobian.reshape(count, 8, 6)
-    return residual, whitened.reshape(-1, 6), miss
-
-
-def _cross_matrices(vectors: Array) -> Array:
-    """[v]x of each, shape (n, 3, 3): v x w = [v]x w."""
-    x, y, z = vectors.T
-    zero = np.zeros(len(vectors))
-    return np.stack(
-        [
-            np.column_stack([zero, -z, y]),
-            np.column_stack([z, zero, -x]),
-            np.column_stack([-y, x, zero]),
-        ],
-        axis=1,
-    )
+    return _Fit(rotation, translation, normal, chi_squared, float(np.sqrt(misses / len(flat))))
 
 
 def _rotation_of(vector: Array) -> Array:
@@ -253,6 +247,15 @@ def _rotation_of(vector: Array) -> Array:
     return rotation
 
 
-def _angle(a: Array, b: Array) -> float:
+def angle_of(a: Array, b: Array) -> float:
     """Angle of the rotation between two rotations, rad; exact for small ones too."""
     return float(2.0 * np.arcsin(min(1.0, float(np.linalg.norm(a - b)) / np.sqrt(8.0))))
+
+
+def reprojection_of(
+    rotation: Array, translation: Array, points: Array, corners: Corners, camera: CameraModel
+) -> float:
+    """Root mean square distance between corners and their projections at a pose, px."""
+    flat = points.reshape(-1, 3)
+    miss = corners.pixels.reshape(-1, 2) - camera.project(flat @ rotation.T + translation)
+    return float(np.sqrt((miss**2).sum() / len(flat)))

@@ -23,6 +23,13 @@ MEANINGS = {
 }
 
 
+MOST_LOST = 0.02
+POOR_PITCH_DEG = 0.02
+BLURRED_PX = 1.5
+GOOD_REPROJECTION_PX = 0.08
+"""Past these the summary gives advice; corners of a good plate miss by 0.01 to 0.03 px."""
+
+
 @dataclass(frozen=True)
 class TrackSummary:
     """Figures of one table of poses.
@@ -43,6 +50,8 @@ class TrackSummary:
         Where the reprojection error is greatest.
     flags
         Flag -> frames that carry it.
+    advice
+        What would make it better; empty where nothing stands out.
     notes
         What else a user must know.
     """
@@ -56,6 +65,7 @@ class TrackSummary:
     worst_frame: int
     worst_reproj_px: float
     flags: dict[FrameFlag, int]
+    advice: tuple[str, ...]
     notes: tuple[str, ...]
 
     def as_json(self) -> dict[str, Any]:
@@ -69,6 +79,7 @@ class TrackSummary:
             "worst_frame": self.worst_frame,
             "worst_reproj_px": self.worst_reproj_px,
             "flags": {flag.name.lower(): n for flag, n in self.flags.items() if flag.name},
+            "advice": list(self.advice),
             "notes": list(self.notes),
         }
 
@@ -87,6 +98,8 @@ class TrackSummary:
         for flag, count in self.flags.items():
             name = (flag.name or "").lower().replace("_", " ")
             table.add_row(name, f"{count} frames: {MEANINGS[flag]}")
+        for line in self.advice:
+            table.add_row("advice", line)
         return table
 
 
@@ -110,5 +123,29 @@ def summarise(poses: "pd.DataFrame", notes: list[str]) -> TrackSummary:
         worst_frame=int(worst["frame"]),
         worst_reproj_px=float(worst["reproj_px"]),
         flags={flag: count for flag, count in counted.items() if count},
+        advice=tuple(_advice(poses, posed, angle)),
         notes=tuple(notes),
     )
+
+
+def _advice(poses: "pd.DataFrame", posed: "pd.DataFrame", angle: str) -> list[str]:
+    """What the figures suggest to do."""
+    lines = []
+    lost = 1.0 - posed["frame"].nunique() / poses["frame"].nunique()
+    if lost > MOST_LOST:
+        lines.append(f"{lost:.0%} of the frames have no pose: more light, or larger markers")
+    sigma = float(posed[f"sigma_{angle}_deg"].median())
+    if angle == "pitch" and sigma > POOR_PITCH_DEG:
+        lines.append("pitch is poor: see `vision plate` for views that show it better")
+    blur = float(posed["blur_px"].median())
+    if blur > BLURRED_PX:
+        lines.append(
+            f"the picture is blurred by {blur:.1f} px: focus, or expose for a shorter time"
+        )
+    reprojection = float(posed["reproj_px"].median())
+    if angle == "pitch" and reprojection > GOOD_REPROJECTION_PX:
+        lines.append(
+            f"corners miss by {reprojection:.2f} px, more than noise: measure the plate, or try "
+            "--self-calibrate; else calibrate the camera anew"
+        )
+    return lines

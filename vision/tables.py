@@ -42,6 +42,7 @@ VIDEO_POSE = Table(
         Column("reproj_px", "number", "rms reprojection error", "px", True, 4),
         Column("ratio", "number", "second-best over best reprojection error", "", True, 3),
         Column("flags", "integer", "frame flag bits"),
+        Column("blur_px", "number", "standard deviation of the point spread", "px", True, 3),
     ),
 )
 
@@ -58,6 +59,7 @@ def common_cells(frame: int, t_s: float, sighting: Sighting, flags: FrameFlag) -
         "reproj_px": estimate.pose.reprojection_px if estimate else float("nan"),
         "ratio": estimate.ratio if estimate else float("nan"),
         "flags": int(sighting.flags | flags),
+        "blur_px": estimate.blur_px if estimate else float("nan"),
     }
 
 

@@ -4,10 +4,10 @@ Of the platform where a run tells how camera and plate are mounted, else of the 
 frame.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from cdpr8.errors import DataError
 from cdpr8.rigfile.schema import Rig
@@ -15,10 +15,15 @@ from cdpr8.runfolder.read import Run
 from cdpr8.runfolder.tables import POSE, FrameFlag
 from cdpr8.runfolder.video import read_video
 from vision.board_fit import check_board_fits
+from vision.branches import choose_branches
 from vision.camera_model import CameraModel
 from vision.frame_times import flags_of_late_frames, note_if_cut, usual_interval
+from vision.motion_clock import flag_jumps_of_motion
 from vision.mounting import Mounting, mounting_of
 from vision.plate import Plate, Singles
+from vision.refine import Refinement
+from vision.rolling_shutter import delay_of, without_skew
+from vision.self_calibration import PlateView, calibrate_plate, spread_out
 from vision.tables import (
     VIDEO_POSE,
     Row,
@@ -27,10 +32,13 @@ from vision.tables import (
     plate_cells,
     platform_cells,
 )
-from vision.tracker import Sighting, Tracker
+from vision.tracker import Sighting, Tracker, flags_of
 
 if TYPE_CHECKING:
     import pandas as pd
+
+CALIBRATION_FRAMES = 60
+"""Frames, evenly over a run, from which its plate is calibrated."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +49,22 @@ class _Seen:
     sighting: Sighting
 
 
+@dataclass(frozen=True)
+class _Still:
+    """A still run, tracked."""
+
+    run: Run
+    seen: list[_Seen]
+
+
 def track_run(
     run: Run,
     *,
     rig: Rig | None = None,
+    refinement: Refinement | None = None,
+    zero: "Run | Literal['rest'] | None" = None,
+    self_calibrate: bool = False,
+    row_delay_s: float = 0.0,
     step: Callable[[], None] | None = None,
     notes: list[str] | None = None,
 ) -> "pd.DataFrame":
@@ -56,6 +76,17 @@ def track_run(
         The run; its own rig file says how camera and plate are mounted.
     rig
         Another rig to take instead.
+    refinement
+        What poses are fitted to; None takes the pixels.
+    zero
+        What shows the platform at X = 0: the frames of this run before its motion (``"rest"``), or
+        a still run of the same camera and plate; None takes the camera's stated pose, or the rest
+        where none is stated.
+    self_calibrate
+        Find where the plate's markers really are, from this run, and track again with that.
+    row_delay_s
+        Rolling shutter: from one row to the next; stamps are those of the middle row, and times in
+        the table become those of the plate's own.
     step
         Called once a frame.
     notes
@@ -72,7 +103,29 @@ def track_run(
         The run has no video, no camera or no plate; the video does not fit them; no marker of the
         plate is in any frame; or the camera's pose is neither stated nor to be had from a rest.
     """
-    rig, notes = rig or run.rig, [] if notes is None else notes
+    notes = [] if notes is None else notes
+    camera, plate = camera_and_plate(run, rig)
+    if self_calibrate:
+        plate = _calibrated(run, plate, camera, refinement, notes)
+    seen = _seen_in(run, Tracker(camera, plate, refinement), camera, step, notes)
+    still = None
+    if isinstance(zero, Run):
+        tracker = Tracker(camera, plate, refinement)
+        still = _Still(zero, _seen_in(zero, tracker, camera, None, notes))
+    return _platform_poses(
+        run, seen, camera, plate, rig or run.rig, still or zero, row_delay_s, notes
+    )
+
+
+def camera_and_plate(run: Run, rig: Rig | None = None) -> tuple[CameraModel, Plate]:
+    """Camera and plate of a run, or of another rig.
+
+    Raises
+    ------
+    DataError
+        The run has no video, or the rig no camera or no plate.
+    """
+    rig = rig or run.rig
     if run.video is None:
         raise DataError("the run has no video.mkv", where=str(run.folder))
     if rig.camera is None or rig.plate is None or isinstance(rig.camera.intrinsics, str):
@@ -82,24 +135,86 @@ def track_run(
             remedy="name a rig file that has both with --rig",
         )
     camera = CameraModel.from_intrinsics(rig.camera.intrinsics, rig.camera.region_of_interest)
-    tracker = Tracker(camera, Plate.from_rig(rig.plate))
+    return camera, Plate.from_rig(rig.plate)
+
+
+def poses_from_sightings(
+    run: Run,
+    sightings: Sequence[Sighting],
+    tracker: Tracker,
+    camera: CameraModel,
+    plate: Plate,
+    *,
+    rig: Rig | None = None,
+    notes: list[str],
+) -> "pd.DataFrame":
+    """The table of a run whose frames were tracked as they came.
+
+    Parameters
+    ----------
+    run
+        The run, complete.
+    sightings
+        Of its frames, from the first.
+    tracker
+        What saw them.
+    camera, plate
+        As it was made with.
+    rig
+        Another rig than the run's own.
+    notes
+        Takes what a user must know.
+    """
+    assert run.video is not None
+    table = run.frames
+    if len(table) != len(sightings):
+        notes.append(
+            f"video.mkv gave {len(sightings)} frames and frames.csv has {len(table)} rows: the "
+            f"{min(len(table), len(sightings))} that both have are kept"
+        )
+    rows = zip(table["frame"], table["t_s"], table["flags"], strict=True)
     seen = [
-        _Seen(frame, t_s, flags, sighting)
-        for (frame, t_s, flags), sighting in _frames(run, tracker, camera, step, notes)
+        _Seen(int(frame), float(t_s), FrameFlag(int(flags)), sighting)
+        for (frame, t_s, flags), sighting in zip(rows, sightings, strict=False)
     ]
     _check_fit(seen, tracker, run.video)
-    mounting = mounting_of(rig)
-    if rig.camera.pose is None:
-        mounting = _with_camera_from_rest(run, mounting, seen, rig.camera.exposure_s, notes)
+    seen = _with_branches_of_all(seen)
+    return _platform_poses(run, seen, camera, plate, rig or run.rig, None, 0.0, notes)
+
+
+def _platform_poses(
+    run: Run,
+    seen: list[_Seen],
+    camera: CameraModel,
+    plate: Plate,
+    rig: Rig,
+    zero: "_Still | Run | Literal['rest'] | None",
+    row_delay_s: float,
+    notes: list[str],
+) -> "pd.DataFrame":
+    """Sightings of the plate to a table of the platform's poses."""
+    assert rig.camera is not None
     interval = 1.0 / (run.start.camera.fps if run.start.camera else rig.camera.fps)
     late = flags_of_late_frames([one.t_s for one in seen], interval)
+    seen = [
+        replace(one, flags=one.flags | dropped) for one, dropped in zip(seen, late, strict=True)
+    ]
+    if row_delay_s:
+        seen = _at_rows_of_plate(seen, plate, camera, row_delay_s)
+    mounting = mounting_of(rig)
+    if isinstance(zero, _Still):
+        mounting = _with_camera_from_still(zero.run, mounting, zero.seen, notes)
+    elif zero == "rest" or rig.camera.pose is None:
+        mounting = _with_camera_from_rest(run, mounting, seen, rig.camera.exposure_s, notes)
     rows: list[Row] = []
-    for one, dropped in zip(seen, late, strict=True):
-        row = common_cells(one.frame, one.t_s, one.sighting, one.flags | dropped)
+    for one in seen:
+        row = common_cells(one.frame, one.t_s, one.sighting, one.flags)
         if one.sighting.estimate is not None:
             row.update(platform_cells(mounting.platform(one.sighting.estimate.pose)))
         rows.append(row)
-    return as_frame(rows, POSE)
+    poses = as_frame(rows, POSE)
+    flag_jumps_of_motion(poses, f"{run.start.excitation.axis}_deg", notes)
+    return poses
 
 
 def track_video(
@@ -108,6 +223,7 @@ def track_video(
     board: Plate | Singles,
     *,
     fps: float | None = None,
+    refinement: Refinement | None = None,
     step: Callable[[], None] | None = None,
     notes: list[str] | None = None,
 ) -> "pd.DataFrame":
@@ -123,6 +239,8 @@ def track_video(
         What to look for.
     fps
         Frame rate to take for times where the container has none.
+    refinement
+        What poses are fitted to; None takes the pixels for a plate, corners for single markers.
     step
         Called once a frame.
     notes
@@ -140,7 +258,7 @@ def track_video(
         The file is no video, is of another size than the camera's, or shows no marker of the board.
     """
     notes = [] if notes is None else notes
-    tracker = Tracker(camera, board)
+    tracker = Tracker(camera, board, refinement)
     seen: list[_Seen] = []
     times: list[float] = []
     for number, (image, stamp) in enumerate(read_video(path)):
@@ -154,6 +272,7 @@ def track_video(
         if step:
             step()
     _check_fit(seen, tracker, path)
+    seen = _with_branches_of_all(seen)
     interval = usual_interval(times, notes, given=fps is not None)
     note_if_cut(path, times, interval, notes)
     late = flags_of_late_frames(times, interval)
@@ -165,6 +284,86 @@ def track_video(
             row.update(plate_cells(one.sighting.estimate.pose))
         rows.append(row)
     return as_frame(rows, VIDEO_POSE)
+
+
+def _seen_in(
+    run: Run,
+    tracker: Tracker,
+    camera: CameraModel,
+    step: Callable[[], None] | None,
+    notes: list[str],
+) -> list[_Seen]:
+    """Every frame of a run, the branches chosen with all frames known."""
+    assert run.video is not None
+    seen = [
+        _Seen(frame, t_s, flags, sighting)
+        for (frame, t_s, flags), sighting in _frames(run, tracker, camera, step, notes)
+    ]
+    _check_fit(seen, tracker, run.video)
+    return _with_branches_of_all(seen)
+
+
+def _at_rows_of_plate(
+    seen: list[_Seen], plate: Plate, camera: CameraModel, row_delay_s: float
+) -> list[_Seen]:
+    """Times and poses of a rolling shutter put right."""
+    moved = list(seen)
+    posed = [
+        (place, one, one.sighting.estimate)
+        for place, one in enumerate(seen)
+        if one.sighting.estimate is not None
+    ]
+    poses = [estimate.pose for _, _, estimate in posed]
+    times = [
+        one.t_s + delay_of(plate, pose, camera, row_delay_s)
+        for (_, one, _), pose in zip(posed, poses, strict=True)
+    ]
+    straight = without_skew(times, poses, plate, camera, row_delay_s)
+    for (place, one, estimate), t_s, pose in zip(posed, times, straight, strict=True):
+        sighting = replace(one.sighting, estimate=replace(estimate, pose=pose))
+        moved[place] = replace(one, t_s=t_s, sighting=sighting)
+    return moved
+
+
+def _calibrated(
+    run: Run,
+    plate: Plate,
+    camera: CameraModel,
+    refinement: Refinement | None,
+    notes: list[str],
+) -> Plate:
+    """The plate with its markers where a run shows them."""
+    assert run.video is not None
+    tracker = Tracker(camera, plate, refinement)
+    views: list[PlateView] = []
+    wanted = set(spread_out(max(len(run.frames), 1), CALIBRATION_FRAMES))
+    for number, (image, _) in enumerate(read_video(run.video)):
+        if number not in wanted and len(run.frames):
+            continue
+        camera.check_size(image, str(run.video))
+        sighting = tracker.see(image).sightings[0]
+        estimate = sighting.estimate
+        if estimate is not None and not sighting.flags:
+            views.append(PlateView(image, sighting.ids, estimate.pose))
+    found = calibrate_plate(plate, views, camera)
+    if found is None:
+        raise DataError(
+            f"the plate cannot be calibrated from {len(views)} good frames",
+            where=str(run.video),
+            allowed="a run with at least 5 frames that show the plate and carry no flag",
+            remedy="track without --self-calibrate, or take a run with the plate in full view",
+        )
+    notes.append(found.sentence())
+    return found.plate
+
+
+def _with_camera_from_still(
+    run: Run, mounting: Mounting, seen: list[_Seen], notes: list[str]
+) -> Mounting:
+    """The mounting with the camera where a still run, the platform at X = 0, puts it."""
+    poses = [one.sighting.estimate.pose for one in seen if one.sighting.estimate is not None]
+    notes.append(f"zero is the mean of {len(poses)} frames of {run.folder.name}")
+    return mounting.with_camera_seeing_rest(poses)
 
 
 def _frames(
@@ -229,6 +428,25 @@ def _with_camera_from_rest(
         f"the camera's pose is taken from the {len(rest)} frames at rest: the pose there is zero"
     )
     return mounting.with_camera_seeing_rest(rest)
+
+
+def _with_branches_of_all(seen: list[_Seen]) -> list[_Seen]:
+    """Each plate's branches chosen anew, with all frames known."""
+    chosen = list(seen)
+    for marker in {one.sighting.marker for one in seen}:
+        places = [
+            (place, one, one.sighting.estimate)
+            for place, one in enumerate(seen)
+            if one.sighting.marker == marker and one.sighting.estimate is not None
+        ]
+        estimates = choose_branches(
+            [one.frame for _, one, _ in places], [estimate for _, _, estimate in places]
+        )
+        for (place, one, before), estimate in zip(places, estimates, strict=True):
+            flags = (one.sighting.flags & ~flags_of(before)) | flags_of(estimate)
+            sighting = replace(one.sighting, estimate=estimate, flags=flags)
+            chosen[place] = replace(one, sighting=sighting)
+    return chosen
 
 
 def _check_fit(seen: list[_Seen], tracker: Tracker, path: Path) -> None:

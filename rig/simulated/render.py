@@ -38,6 +38,10 @@ class Appearance:
         Standard deviation of the point spread (lens, focus and the pixel's own aperture), px.
     noise
         Standard deviation of the sensor noise, in 1/255 of full scale.
+    shading
+        How much brighter the plate's right rim is than its left one, as a fraction of the middle.
+    gamma
+        The sensor stores light ** (1 / gamma).
     """
 
     white: float = 0.80
@@ -45,6 +49,8 @@ class Appearance:
     background: float = 0.30
     blur_px: float = 0.7
     noise: float = 2.0
+    shading: float = 0.0
+    gamma: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -134,6 +140,9 @@ class PlateRenderer:
                 image[seen] -= (look.white - look.black) * ink_cover(
                     ink, *self._plate_coordinates(view, seen)
                 )
+        if look.shading and (seen := self._window(view, self._paper)) is not None:
+            u = self._plate_coordinates(view, seen)[0]
+            image[seen] *= 1.0 + look.shading * (u - (left + right) / 2.0) / (right - left)
         return image
 
     def expose(self, poses: Array, weights: Array, generator: np.random.Generator) -> Image:
@@ -156,7 +165,7 @@ class PlateRenderer:
         light = np.zeros((self.height_px, self.width_px))
         for pose, weight in zip(poses, weights, strict=True):
             light += weight * self.brightness(pose)
-        levels = 255.0 * light
+        levels = 255.0 * light ** (1.0 / self.appearance.gamma)
         levels += self.appearance.noise * generator.standard_normal(light.shape)
         return np.clip(np.rint(levels), 0.0, 255.0).astype(np.uint8)
 

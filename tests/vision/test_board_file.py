@@ -80,3 +80,46 @@ def test_a_wrong_board_file_is_one_message(tmp_path, text, says, allowed):
 def test_a_missing_board_file_is_one_message(tmp_path):
     with pytest.raises(DataError, match="cannot be read"):
         load_board(tmp_path / "none.toml")
+
+
+PLANE = """[[plane]]
+dictionary = "DICT_4X4_50"
+grid = {{columns = 1, rows = 1, size_m = 0.04, gap_m = 0.01, first_id = {first}}}
+pose = {{position_m = {place}, normal = {normal}, up = [0, 0, 1]}}
+"""
+
+
+def test_a_board_of_two_planes_has_its_markers_in_space(tmp_path):
+    path = tmp_path / "b.toml"
+    path.write_text(
+        PLANE.format(first=0, place=[0, 0, 0], normal=[0, -1, 0])
+        + PLANE.format(first=7, place=[0.1, 0, 0], normal=[1, 0, 0])
+    )
+    board = load_board(path)
+    assert board.ids == (0, 7)
+    assert board.corners[0] == pytest.approx(
+        np.array([[-0.02, 0, 0.02], [0.02, 0, 0.02], [0.02, 0, -0.02], [-0.02, 0, -0.02]])
+    )
+    assert board.corners[1, :, 0] == pytest.approx([0.1] * 4)
+
+
+def test_an_id_in_two_planes_is_refused(tmp_path):
+    path = tmp_path / "b.toml"
+    path.write_text(2 * PLANE.format(first=0, place=[0, 0, 0], normal=[0, -1, 0]))
+    with pytest.raises(DataError, match="an id in two of them"):
+        load_board(path)
+
+
+def test_a_charuco_board_has_markers_and_saddles(tmp_path):
+    path = tmp_path / "b.toml"
+    path.write_text(
+        '[charuco]\ndictionary = "DICT_6X6_250"\ncolumns = 5\nrows = 7\n'
+        "square_m = 0.04\nmarker_m = 0.02\n"
+    )
+    board = load_board(path)
+    assert len(board.ids) == 17
+    assert board.saddles.shape == (24, 3)
+    assert board.quiet_m == pytest.approx(0.01)
+    path.write_text(path.read_text().replace("marker_m = 0.02", "marker_m = 0.05"))
+    with pytest.raises(DataError, match="marker_m must be less"):
+        load_board(path)

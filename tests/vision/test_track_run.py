@@ -7,6 +7,7 @@ from takes import FPS, PITCH_DEG, PITCH_HZ, REST_S, film, still, write_run
 from cdpr8.errors import DataError
 from cdpr8.runfolder import POSE_AXES, FrameFlag, load_run
 from cdpr8.runfolder.tables import POSE
+from vision.refine import Refinement
 from vision.track import track_run
 
 
@@ -166,3 +167,41 @@ def test_a_run_without_video_is_refused(take, packaged_text, tmp_path):
     (folder / "video.mkv").unlink()
     with pytest.raises(DataError, match=r"no video\.mkv"):
         track_run(load_run(folder))
+
+
+def test_a_still_run_or_the_rest_sets_zero(take, packaged, packaged_text, tmp_path):
+    folder = write_run(tmp_path / "run", take, packaged_text, take.images[:30], take.times[:30])
+    quiet = film(packaged, 8, motion=still, seed=9)
+    zero = write_run(tmp_path / "zero", quiet, packaged_text)
+    plain = track_run(load_run(folder))
+    for choice, words in ((load_run(zero), "8 frames of zero"), ("rest", "8 frames at rest")):
+        notes = []
+        poses = track_run(load_run(folder), zero=choice, notes=notes)
+        moved = (poses["pitch_deg"] - plain["pitch_deg"]).to_numpy()
+        assert np.abs(moved).max() < 0.005  # the stated camera was right: little to correct
+        assert np.ptp(moved) < 1e-3
+        assert any(words in line for line in notes)
+
+
+def test_a_misprinted_plate_is_found_from_the_run_itself(packaged, packaged_text, tmp_path):
+    wrong = packaged_text.replace(
+        "[plate.grid]", "[plate.grid]  # as printed, the gap is 0.1 mm wider"
+    ).replace("gap_m = 0.01", "gap_m = 0.0101")
+    assert wrong != packaged_text
+    shown = film(packaged, 24)
+    folder = write_run(tmp_path / "run", shown, wrong)
+    notes = []
+    before = track_run(load_run(folder))
+    after = track_run(load_run(folder), self_calibrate=True, notes=notes)
+    assert after["reproj_px"].median() < before["reproj_px"].median() / 2
+    assert after["sigma_pitch_deg"].median() < before["sigma_pitch_deg"].median() / 2
+    assert "plate self-calibrated from" in notes[0]
+
+
+def test_corners_alone_are_a_choice(take, packaged_text, tmp_path):
+    folder = write_run(tmp_path / "run", take, packaged_text, take.images[:12], take.times[:12])
+    pixels = track_run(load_run(folder))
+    corners = track_run(load_run(folder), refinement=Refinement.CORNERS)
+    assert pixels["blur_px"].between(0.65, 0.75).all()
+    assert corners["blur_px"].isna().all()
+    assert pixels["sigma_pitch_deg"].median() < corners["sigma_pitch_deg"].median()

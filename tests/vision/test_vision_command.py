@@ -74,6 +74,13 @@ def test_a_video_is_tracked_with_a_rig_file_or_refused_without(run, tmp_path, ca
         (["none"], ExitCode.BAD_DATA, "no run 'none'"),
         (["none.mp4"], ExitCode.BAD_DATA, "no video 'none.mp4'"),
         (["today", "--board", "b.toml"], ExitCode.USAGE, "--board with a run"),
+        (["today", "--refine", "magic"], ExitCode.USAGE, "corners or photometric"),
+        (
+            ["junk.mp4", "--rig", "rig.toml", "--zero", "rest"],
+            ExitCode.USAGE,
+            "--zero with a video",
+        ),
+        (["today", "--zero", "none"], ExitCode.BAD_DATA, "no run 'none'"),
         (["today", "--rig", "none.toml"], ExitCode.BAD_DATA, "no rig file"),
         (["junk.mp4", "--rig", "rig.toml"], ExitCode.BAD_DATA, "not a video"),
     ],
