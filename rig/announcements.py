@@ -9,6 +9,7 @@ from cdpr8.rigfile import Excitation
 from cdpr8.runfolder import EventKind
 from rig.scribe import Scribe
 from rig.streams import Span
+from rig.taps import Taps
 
 ANCHOR_EVERY_S = 10.0
 """Clock anchors (run's time against wall time) are noted this often."""
@@ -36,13 +37,22 @@ class AnnouncementStream:
         Takes the events.
     span
         Of the run.
+    taps
+        Where the user's sync taps come in.
     """
 
     name = "announcements"
 
     def __init__(
-        self, announcements: tuple[Announcement, ...], clock: Clock, scribe: Scribe, span: Span
+        self,
+        announcements: tuple[Announcement, ...],
+        clock: Clock,
+        scribe: Scribe,
+        span: Span,
+        taps: Taps | None = None,
     ) -> None:
+        self._taps = taps
+        self._wall_ahead_s: float | None = None
         self._waiting = list(announcements)
         self._clock = clock
         self._scribe = scribe
@@ -55,9 +65,16 @@ class AnnouncementStream:
 
     def step(self) -> bool:
         """Wait a little, or write the next one."""
+        now_s = self._clock.monotonic_s()
+        self._look_at_the_wall(now_s)
+        while self._taps is not None and not self._taps.empty():
+            tapped_s = self._taps.get() - self._span.origin_s
+            self._scribe.event(tapped_s, EventKind.SYNC_TAP, "Enter was pressed")
+        if not self._waiting and self._taps is not None and now_s < self._span.end_s:
+            self._clock.sleep_until(min(self._span.end_s, now_s + _PATIENCE_S))
+            return True
         if not self._waiting or self.due_s > self._span.end_s:
             return False
-        now_s = self._clock.monotonic_s()
         if now_s < self.due_s:
             self._clock.sleep_until(min(self.due_s, now_s + _PATIENCE_S))
             return True
@@ -68,6 +85,23 @@ class AnnouncementStream:
         self._scribe.event(announced.t_s, announced.kind, detail)
         return True
 
+    def _look_at_the_wall(self, now_s: float) -> None:
+        """Note a step of the wall clock; the run's own times do not move with it."""
+        ahead_s = self._clock.wall().timestamp() - now_s
+        if self._wall_ahead_s is None:
+            self._wall_ahead_s = ahead_s
+        step_s = ahead_s - self._wall_ahead_s
+        if abs(step_s) > STEP_S:
+            self._scribe.event(
+                now_s - self._span.origin_s,
+                EventKind.CLOCK_STEP,
+                f"the wall clock was stepped by {step_s:+.3f} s",
+            )
+        self._wall_ahead_s = ahead_s
+
+
+STEP_S = 0.1
+"""A change of the wall clock against the monotonic one by more than this is a step."""
 
 _PATIENCE_S = 0.1
 """A stream looks up this often, so that a stop is not waited for."""

@@ -23,7 +23,7 @@ def amplifiers(rig: Rig) -> dict[int, Amplifier]:
                 remedy="give it `amplifier = {address = ..., nominal_force_n = ...}`",
             )
         for other, taken in found.items():
-            if taken.address == entry.amplifier.address:
+            if taken.address == entry.amplifier.address and not rig.bus.streaming:
                 raise RigFileError(
                     f"cables {other} and {cable} share amplifier address {taken.address}",
                     where=rig.name,

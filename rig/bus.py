@@ -1,19 +1,19 @@
 """The amplifiers' bus: start it, take one value at a time, bring a lost node back, stop it."""
 
 from contextlib import suppress
-from dataclasses import dataclass
 
 from cdpr8.errors import DeviceError
-from cdpr8.rigfile.schema import Amplifier, Rig
+from cdpr8.rigfile.schema import Rig
 from rig.amplifier import message
 from rig.amplifier.dialogue import Dialogue, NoAnswerError
-from rig.amplifier.frame import BadFrameError, FrameFormat, Reading
+from rig.amplifier.frame import BadFrameError
 from rig.amplifier.node import NodeClient, Settings
 from rig.amplifier.probe import probe_format
-from rig.amplifier.profile import Identity, Profile, profile_of
+from rig.amplifier.profile import Identity, profile_of
 from rig.amplifier.scaling import Scaling
 from rig.assignment import amplifiers
-from rig.transport import Transport
+from rig.station import Station, Value, check_identity
+from rig.transport import LineLostError, Transport
 
 STOP_WAIT_S = 0.1
 """Silence after ``;S98;STP;`` (protocol note, section 10)."""
@@ -21,68 +21,11 @@ STOP_WAIT_S = 0.1
 VALUE_MARGIN_S = 0.02
 """How much longer than its bytes a value may take (protocol note, section 10, timeouts)."""
 
+JITTER_S = 0.001
+"""How much the way to the node and back may vary, in adapters, without the computer's fault."""
+
 ALL_STOP = message.END + message.select(message.BROADCAST) + message.command("STP")
 ALL_MEASURE = message.END + message.select(message.BROADCAST) + b"MSV?0;"
-
-
-@dataclass(frozen=True)
-class Station:
-    """One amplifier as it stands on the bus, configured and measuring.
-
-    Attributes
-    ----------
-    cable
-        1 to 8.
-    address
-        Its bus address.
-    identity, profile
-        Who it said it is, and the dialect that follows.
-    settings
-        Command -> answer, read back.
-    format
-        Of its values, probed.
-    scaling
-        From digits to newtons.
-    period_s
-        Between two of its values: the newest is between 0 and this old.
-    """
-
-    cable: int
-    address: int
-    identity: Identity
-    profile: Profile
-    settings: dict[str, str]
-    format: FrameFormat
-    scaling: Scaling
-    period_s: float
-
-    @property
-    def request(self) -> bytes:
-        """What asks for its newest value in bus mode."""
-        return message.select(self.address)
-
-
-@dataclass(frozen=True, slots=True)
-class Value:
-    """One value as it came off the bus; times on the transport's clock, in s.
-
-    Attributes
-    ----------
-    reading
-        Digits and status.
-    request_s
-        Just before it was asked for.
-    received_s
-        When its last byte had come.
-    sampled_s
-        Estimated sampling instant: the start of the answer less the mean age of a newest value.
-        Its standard uncertainty is the period over the square root of 12 (section 9).
-    """
-
-    reading: Reading
-    request_s: float
-    received_s: float
-    sampled_s: float
 
 
 class Bus:
@@ -94,21 +37,28 @@ class Bus:
         The line.
     rig
         The machine: which amplifier is on which cable, and how they are to be set.
+    zeros
+        Host-side zeros of the cells by cable, in mV/V.
     """
 
-    def __init__(self, transport: Transport, rig: Rig) -> None:
+    def __init__(
+        self, transport: Transport, rig: Rig, zeros: dict[int, float] | None = None
+    ) -> None:
         self.transport = transport
+        self._zeros = zeros or {}
         self._rig = rig
         self._amplifiers = amplifiers(rig)
         self._dialogue = Dialogue(transport)
-        # Without a parity bit nothing but the checksum would betray a damaged value; with one,
-        # the last byte can tell the amplifier's status instead.
+        # Without a parity bit nothing but the checksum would betray a damaged value.
         self._settings = Settings(
             cof=rig.bus.output_format,
             icr=rig.bus.output_rate,
             asf=rig.bus.filter,
-            csm=1 if rig.bus.parity == "none" else 0,
+            csm=1 if rig.bus.checksum or rig.bus.parity == "none" else 0,
         )
+        self._asked: Station | None = None
+        self._asked_s = self._sent_s = 0.0
+        self._least_late_s: dict[int, float] = {}
 
     def start(self) -> tuple[Station, ...]:
         """Silence the bus, identify, configure and start all amplifiers.
@@ -135,8 +85,16 @@ class Bus:
             self._station(cable, identities[cable], settings[cable]) for cable in self._amplifiers
         )
 
-    def take(self, station: Station) -> Value:
+    def take(self, station: Station, following: Station | None = None) -> Value:
         """The newest value of one amplifier.
+
+        Parameters
+        ----------
+        station
+            Whose value; where it was the `following` of the call before, it has been asked.
+        following
+            Whom to ask next, at once: what the caller does with this value then takes no time
+            from the line.
 
         Raises
         ------
@@ -146,10 +104,16 @@ class Bus:
             The line is gone.
         """
         try:
-            return self._take(station)
+            value = self._take(station)
         except BadFrameError:
+            self._asked = None
             self._dialogue.settle()
             raise
+        if following is not None:
+            # Bytes that came unasked are the next value's trouble, not this one's.
+            with suppress(BadFrameError):
+                self._ask(following)
+        return value
 
     def bring_back(self, station: Station) -> bool:
         """Try a lost amplifier; one that was reset is configured again before it is trusted.
@@ -159,6 +123,7 @@ class Bus:
         bool
             Whether it gives values again.
         """
+        self._asked = None
         with suppress(BadFrameError):
             self._take(station)
             return True
@@ -175,31 +140,86 @@ class Bus:
         except (NoAnswerError, BadFrameError):
             self._dialogue.settle()
             return False
+        except LineLostError:
+            raise
         except DeviceError:
             self._dialogue.settle()
             self.transport.discard()
             return False
         return True
 
+    def resume(self, stations: tuple[Station, ...]) -> tuple[Station, ...]:
+        """Set the bus up again after the line was gone; nothing is trusted unread.
+
+        Returns
+        -------
+        tuple of Station
+            Those that are what they were; the others are to be tried one by one.
+
+        Raises
+        ------
+        DeviceError
+            The line is gone again.
+        """
+        self._asked = None
+        self.stop()
+        found = []
+        for station in stations:
+            node = NodeClient(self._dialogue, station.address)
+            try:
+                same = node.identify(tries=1) == station.identity
+                if same and node.configure(self._settings) == station.settings:
+                    found.append(station)
+            except LineLostError:
+                raise
+            except DeviceError:
+                self._dialogue.settle()
+        self._dialogue.tell(ALL_MEASURE)
+        self._dialogue.settle()
+        return tuple(found)
+
     def stop(self) -> None:
         """Stop all output and wait for silence."""
+        self._asked = None
         self._dialogue.tell(ALL_STOP)
         self.transport.drain(STOP_WAIT_S)
 
-    def _take(self, station: Station) -> Value:
-        transport = self.transport
-        if stray := transport.discard():
+    def _ask(self, station: Station) -> None:
+        if stray := self.transport.discard():
             raise BadFrameError("bytes that nobody asked for", stray)
-        line, length, request = transport.line, station.format.length, station.request
-        request_s = transport.clock.monotonic_s()
-        transport.write(request)
-        line_s = (len(request) + length) * line.char_s
-        received = transport.read(length, request_s + line_s + VALUE_MARGIN_S)
+        self._asked_s = self.transport.clock.monotonic_s()
+        self.transport.write(station.request)
+        self._sent_s = self.transport.clock.monotonic_s()
+        self._asked = station
+
+    def _take(self, station: Station) -> Value:
+        if self._asked is not station:
+            self._ask(station)
+        self._asked = None
+        transport, request_s = self.transport, self._asked_s
+        line, length = transport.line, station.format.length
+        deadline_s = request_s + (len(station.request) + length) * line.char_s + VALUE_MARGIN_S
+        received = transport.read(length, deadline_s)
         if received.damaged:
             raise BadFrameError("parity error", received.data)
         reading = station.format.decode(received.data)
-        answer_s = received.last_byte_s - length * line.char_s
+        if received.last_byte_s > deadline_s:
+            raise BadFrameError("noticed too late to be timed", received.data)
+        answer_s = self._answer_s(station, received.last_byte_s - length * line.char_s)
         return Value(reading, request_s, received.last_byte_s, answer_s - station.period_s / 2.0)
+
+    def _answer_s(self, station: Station, received_s: float) -> float:
+        """When an answer began: as its arrival tells, but no later than the request allows.
+
+        A busy computer notices an answer late, and the arrival with it; a node always takes about
+        the same time to answer. So an answer began no later than the request had gone out, plus
+        the least time this node has ever taken, plus `JITTER_S`.
+        """
+        line_s = len(station.request) * self.transport.line.char_s
+        late_s = received_s - self._sent_s - line_s
+        least_s = min(late_s, self._least_late_s.get(station.address, late_s))
+        self._least_late_s[station.address] = least_s
+        return received_s - max(0.0, late_s - least_s - JITTER_S)
 
     def _identify_all(self) -> dict[int, Identity]:
         found: dict[int, Identity] = {}
@@ -212,35 +232,11 @@ class Bus:
                 if len(silent) > 2 and not found:
                     break
                 continue
-            self._check(cable, amplifier, identity)
+            check_identity(self._rig, cable, amplifier, identity, self.transport.name)
             found[cable] = identity
         if silent:
             raise self._silent(silent, found)
         return found
-
-    def _check(self, cable: int, amplifier: Amplifier, identity: Identity) -> None:
-        where = f"cable {cable}, amplifier {amplifier.address:02d} on {self.transport.name}"
-        expected = amplifier.serial_number
-        if expected and identity.serial_number != expected:
-            raise DeviceError(
-                f"its serial number is {identity.serial_number!r}",
-                allowed=f"{expected!r}, as the rig file says",
-                where=where,
-                remedy="swap the addresses back, or correct serial_number and the certificate's "
-                "sensitivity of this cable in the rig file",
-            )
-        profile = profile_of(identity)
-        bus = self._rig.bus
-        for key, value, count in (
-            ("filter", bus.filter, len(profile.cut_offs_hz)),
-            ("output_rate", bus.output_rate, len(profile.rates_per_s)),
-        ):
-            if value >= count:
-                raise DeviceError(
-                    f"[bus] {key} = {value} is none of the {profile.name} dialect's",
-                    allowed=f"0 to {count - 1}",
-                    where=where,
-                )
 
     def _station(self, cable: int, identity: Identity, settings: dict[str, str]) -> Station:
         amplifier = self._amplifiers[cable]
@@ -255,7 +251,7 @@ class Bus:
             profile=profile,
             settings=settings,
             format=format_,
-            scaling=Scaling.of(amplifier, format_),
+            scaling=Scaling.of(amplifier, format_, self._zeros.get(cable, 0.0)),
             period_s=profile.period_s(self._settings.icr),
         )
 

@@ -1,19 +1,21 @@
-"""The `rig` command: record a run, list the amplifiers."""
+"""The `rig` command: what comes before, during and after a run."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cdpr8.terminal import entry, note, say, say_json, say_table
+from cdpr8.terminal import complain, entry, note, say_json, say_table
+from rig.command_before import doctor_command, pretension_command, zero_command
+from rig.command_runs import export_command, import_command, verify_command
 
 if TYPE_CHECKING:
     from cdpr8.rigfile import Excitation, Rig
-    from rig.recorder import Recording
+    from rig.zeros import Zeros
 
 app = typer.Typer(
     name="rig",
-    help="The machine: record runs, list amplifiers.\n\n"
+    help="The machine: check it, record runs, verify, export and import them.\n\n"
     "Example: rig record --duration 10 --name first",
     no_args_is_help=True,
     add_completion=False,
@@ -75,6 +77,17 @@ def record_command(
             "samples and frames exactly.",
         ),
     ] = False,
+    until: Annotated[
+        str | None, typer.Option(help="End at this time of day, HH:MM or HH:MM:SS.")
+    ] = None,
+    zeros: Annotated[
+        Path | None,
+        typer.Option(help="Zeros of the cells.  [default: zeros.json beside the rig file]"),
+    ] = None,
+    on_overload: Annotated[
+        str | None,
+        typer.Option(help="Command to run when a cable is overloaded ($CDPR8_CABLE says which)."),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Record tensions and video into a run folder.
@@ -85,19 +98,33 @@ def record_command(
     Examples: rig record --duration 10;
     rig record --duration 20 --rig lab.toml --name slow --frequency 0.5
     """
+    import sys
     from datetime import UTC, datetime
 
     from cdpr8.clock import RealClock, VirtualClock
     from cdpr8.errors import UsageError
+    from cdpr8.rigfile import files_beside
+    from rig.alarm import OverloadAlarm
     from rig.live import live_view
+    from rig.outcome import show, summary
     from rig.recorder import record
+    from rig.slack import slack_warning
     from rig.stop import StopRequest
+    from rig.taps import listen_for_taps
+    from rig.until import seconds_until
 
     if out is not None and name is not None:
         raise UsageError("--out and --name both name the run folder", allowed="one of them")
     rig_path, rig_text, machine = _load(rig, simulated)
-    excitation = _excitation(machine, duration, amplitude, frequency)
     now = datetime.now(UTC)
+    if until is not None:
+        if duration is not None:
+            raise UsageError("--until and --duration both end the run", allowed="one of them")
+        duration = seconds_until(until, now.astimezone())
+    excitation = _excitation(machine, duration, amplitude, frequency)
+    if (warning := slack_warning(machine, excitation)) is not None:
+        note(f"warning: {warning}")
+    taken = _zeros(zeros, rig_path)
     folder = out or RUNS / (name or now.astimezone().strftime("%Y-%m-%dT%H-%M-%S"))
     if machine.bus.port == SIMULATED:
         note("recording the simulated rig, no hardware: the run is marked simulated")
@@ -106,8 +133,14 @@ def record_command(
     elif machine.camera is not None and machine.camera.source == SIMULATED:
         note("the rig file names no real camera ([camera] source): tensions only, no video")
     note(f"recording {excitation.duration_s:g} s into {folder}; Ctrl-C ends it in order")
+    if sys.stdin.isatty():
+        note("tap the platform before and after the motion, and press Enter with each tap")
     stop = StopRequest()
-    with stop.listening(), live_view(machine, excitation.duration_s) as watch:
+    with (
+        stop.listening(),
+        live_view(machine, excitation.duration_s, folder) as watch,
+        listen_for_taps() as taps,
+    ):
         recording = record(
             machine,
             rig_text,
@@ -118,11 +151,15 @@ def record_command(
             rig_file=str(rig_path),
             stop=stop,
             watch=watch,
+            alarm=OverloadAlarm(complain, on_overload),
+            zeros=taken,
+            taps=taps,
+            beside_rig=files_beside(rig_text, rig_path.parent),
         )
     if as_json:
-        say_json(_summary(recording))
+        say_json(summary(recording))
     else:
-        _show(recording)
+        show(recording)
     if recording.fault is not None:
         raise recording.fault
 
@@ -186,6 +223,14 @@ def scan_command(
         )
 
 
+app.command("doctor")(doctor_command)
+app.command("zero")(zero_command)
+app.command("pretension")(pretension_command)
+app.command("verify")(verify_command)
+app.command("export")(export_command)
+app.command("import")(import_command)
+
+
 def _load(path: Path | None, simulated: bool) -> "tuple[Path, str, Rig]":
     """The rig file's path and text, and the rig, simulated where that was asked for."""
     from cdpr8.rigfile import find_rig_file, load_rig
@@ -199,6 +244,19 @@ def _load(path: Path | None, simulated: bool) -> "tuple[Path, str, Rig]":
             update["camera"] = rig.camera.model_copy(update={"source": SIMULATED})
         rig = rig.model_copy(update=update)
     return path, text, rig
+
+
+def _zeros(path: Path | None, rig_path: Path) -> "Zeros | None":
+    """The zeros that were named, else those beside the rig file, said aloud."""
+    from cdpr8.errors import DataError
+    from rig.zeros import default_zeros_path, read_zeros
+
+    found = read_zeros(path or default_zeros_path(rig_path))
+    if path is not None and found is None:
+        raise DataError("there is no such zeros file", where=str(path))
+    if found is not None:
+        note(f"zeros of the cells from {path or default_zeros_path(rig_path)}")
+    return found
 
 
 def _excitation(
@@ -233,65 +291,3 @@ def _fresh_seed() -> int:
     import secrets
 
     return secrets.randbits(32)
-
-
-def _summary(recording: "Recording") -> dict[str, Any]:
-    stop = recording.stop
-    return {
-        "run": str(recording.folder),
-        "simulated": recording.start.simulated,
-        "seed": recording.start.seed,
-        "reason": stop.reason,
-        "duration_s": stop.t_s,
-        "samples": stop.samples,
-        "rate_per_s": {cable: round(recording.rate_per_s(cable), 2) for cable in stop.samples},
-        "frames": stop.frames,
-        "lost": stop.lost,
-        "fault": recording.fault.sentence() if recording.fault else None,
-        "next": _next_commands(recording),
-    }
-
-
-def _show(recording: "Recording") -> None:
-    from rich.table import Table
-
-    start, stop = recording.start, recording.stop
-    kind = "simulated " if start.simulated else ""
-    say(f"{kind}run {recording.folder}: {stop.t_s:.1f} s, ended by {_REASONS[stop.reason]}")
-    table = Table()
-    for heading in ("cable", "samples", "rate 1/s"):
-        table.add_column(heading, justify="right")
-    for cable, count in stop.samples.items():
-        table.add_row(str(cable), str(count), f"{recording.rate_per_s(cable):.1f}")
-    say_table(table)
-    camera = start.camera
-    say(f"frames: {stop.frames}" + (f" at {camera.fps:g}/s" if camera else " (no camera)"))
-    lost = (f"{_LOST.get(what, what)} {count}" for what, count in stop.lost.items())
-    say("lost:   " + (", ".join(lost) or "nothing"))
-    for line in _next_commands(recording):
-        say(f"next:   {line}")
-
-
-def _next_commands(recording: "Recording") -> list[str]:
-    import shlex
-
-    run = shlex.quote(str(recording.folder))
-    return [f"vision track {run}", f"analysis compare {run}"]
-
-
-_REASONS = {
-    "duration": "the end of its duration",
-    "interrupted": "the user",
-    "stopped_at_once": "the user, at once",
-    "device": "a device fault",
-    "disk_full": "the disk",
-}
-
-_LOST = {
-    "bad_frame": "bad values",
-    "no_answer": "requests without answer",
-    "node_lost": "amplifiers gone silent",
-    "frame_dropped": "frames dropped",
-    "camera_lost": "camera gone",
-    "flagged": "samples flagged",
-}

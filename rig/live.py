@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cdpr8.rigfile import Rig
@@ -17,7 +18,9 @@ SHOW_EVERY_S = 0.25
 
 
 @contextmanager
-def live_view(rig: Rig, duration_s: float) -> Iterator[Callable[[Tally, float], None] | None]:
+def live_view(
+    rig: Rig, duration_s: float, folder: Path | None = None
+) -> Iterator[Callable[[Tally, float], None] | None]:
     """A table that follows the counts; None where standard error is no terminal.
 
     Parameters
@@ -26,6 +29,8 @@ def live_view(rig: Rig, duration_s: float) -> Iterator[Callable[[Tally, float], 
         For names and the cells' nominal forces.
     duration_s
         Of the whole recording.
+    folder
+        Of the run: the disk it is on.
     """
     import sys
 
@@ -43,18 +48,20 @@ def live_view(rig: Rig, duration_s: float) -> Iterator[Callable[[Tally, float], 
             if now_s - shown_s < SHOW_EVERY_S:
                 return
             shown_s = now_s
-            live.update(_table(rig, duration_s, tally, now_s), refresh=True)
+            live.update(_table(rig, duration_s, tally, now_s, folder), refresh=True)
 
         yield show
 
 
-def _table(rig: Rig, duration_s: float, tally: Tally, now_s: float) -> "Table":
+def _table(rig: Rig, duration_s: float, tally: Tally, now_s: float, folder: Path | None) -> "Table":
     from rich.table import Table
 
     lost = ", ".join(f"{what} {count}" for what, count in tally.lost.items()) or "nothing lost"
+    left_s = max(0.0, duration_s - now_s)
     table = Table(
-        title=f"{max(0.0, now_s):.1f} of {duration_s:g} s, {tally.frames} frames, {lost}",
-        caption=tally.last_event,
+        title=f"{max(0.0, now_s):.1f} of {duration_s:g} s ({left_s:.0f} s left), "
+        f"{tally.frames} frames, {lost}",
+        caption=f"{tally.last_event}   {_disk_left(folder)}",
     )
     for heading in ("cable", "rate 1/s", "tension N", ""):
         table.add_column(heading, justify="left" if heading in ("cable", "") else "right")
@@ -66,6 +73,22 @@ def _table(rig: Rig, duration_s: float, tally: Tally, now_s: float) -> "Table":
             f"{number} {cable.name}",
             f"{tally.samples[number] / now_s:.1f}" if now_s > 0 else "",
             "" if tension_n is None else f"{tension_n:.3f}",
-            "#" * filled + "." * (BAR - filled),
+            _bar(filled),
         )
     return table
+
+
+def _bar(filled: int) -> str:
+    """Of the cell's range; the last tenth is drawn otherwise."""
+    warn = round(0.9 * BAR)
+    return "".join(
+        ("!" if place >= warn else "#") if place < filled else "." for place in range(BAR)
+    )
+
+
+def _disk_left(folder: Path | None) -> str:
+    import shutil
+
+    if folder is None or not folder.exists():
+        return ""
+    return f"disk {shutil.disk_usage(folder).free / 1e9:.1f} GB left"

@@ -6,8 +6,9 @@ from importlib import metadata
 from typing import Protocol
 
 from cdpr8.clock import Clock, VirtualClock
-from cdpr8.errors import DeviceError
+from cdpr8.errors import DeviceError, RigFileError
 from cdpr8.rigfile import Excitation, Rig
+from rig.assignment import amplifiers
 from rig.camera import Camera, CaptureCamera
 from rig.transport import Transport
 
@@ -33,6 +34,9 @@ class Machine:
         Told the run's origin on the clock's seconds, before the first sample.
     close
         Gives everything back.
+    ports
+        Where each amplifier has a line of its own: those of all cables, in order; `transport` is
+        the first of them.
     """
 
     transport: Transport
@@ -41,6 +45,7 @@ class Machine:
     motion_known: bool
     begin: Callable[[float], None]
     close: Callable[[], None]
+    ports: tuple[Transport, ...] = ()
 
 
 class OpenRig(Protocol):
@@ -84,27 +89,54 @@ def open_machine(rig: Rig, excitation: Excitation, clock: Clock, *, seed: int = 
 
 def _open_hardware(rig: Rig, clock: Clock) -> Machine:
     from rig.assignment import line_settings
-    from rig.transport import open_serial_port
+    from rig.transport import TwoWire, open_serial_port
 
-    transport = open_serial_port(rig.bus.port, line_settings(rig), clock)
+    lines: list[Transport] = []
+
+    def close_lines() -> None:
+        for line in lines:
+            line.close()
+
+    try:
+        for path in _paths(rig):
+            opened: Transport = open_serial_port(path, line_settings(rig), clock)
+            lines.append(TwoWire(opened) if rig.bus.echo else opened)
+    except Exception:
+        close_lines()
+        raise
     camera: Camera | None = None
     try:
         if rig.camera is not None and rig.camera.source != "simulated":
             camera = CaptureCamera(rig.camera, clock)
     except Exception:
-        transport.close()
+        close_lines()
         raise
 
     def close() -> None:
-        transport.close()
+        close_lines()
         if camera is not None:
             camera.close()
 
     return Machine(
-        transport=transport,
+        transport=lines[0],
+        ports=tuple(lines) if rig.bus.streaming else (),
         camera=camera,
         simulated=False,
         motion_known=False,
         begin=lambda _: None,
         close=close,
     )
+
+
+def _paths(rig: Rig) -> list[str]:
+    if not rig.bus.streaming:
+        return [rig.bus.port]
+    found = amplifiers(rig)
+    for cable, amplifier in found.items():
+        if not amplifier.port:
+            raise RigFileError(
+                f"cable {cable} has no port, and [bus] streaming = true",
+                where=rig.name,
+                remedy="give its amplifier `port = ...`, or set streaming = false",
+            )
+    return [amplifier.port for amplifier in found.values()]

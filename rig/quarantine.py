@@ -40,8 +40,14 @@ class Quarantine:
         self._failures[cable] = self._failures.get(cable, 0) + 1
         if self._failures[cable] < FAILURES_TO_LOSE:
             return False
-        self._absent[cable] = _Absence(now_s, now_s + BACK_OFF_S[0])
+        self.lose(cable, now_s)
         return True
+
+    def lose(self, cable: int, now_s: float, retry_after_s: float | None = None) -> None:
+        """The node is lost, whatever it answered before; one lost already keeps its beginning."""
+        wait_s = BACK_OFF_S[0] if retry_after_s is None else retry_after_s
+        since_s = self._absent[cable].since_s if cable in self._absent else now_s
+        self._absent[cable] = _Absence(since_s, now_s + wait_s)
 
     def answered(self, cable: int) -> None:
         """Forget the failures of a node that is not lost."""

@@ -1,7 +1,7 @@
 """Recording a run: open the rig, start the bus, write what comes until the end."""
 
 import errno
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,13 +19,19 @@ from cdpr8.runfolder import (
 )
 from rig.announcements import AnnouncementStream, announcements
 from rig.bus import Bus
+from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
+from rig.reserve import Reserve
 from rig.schedule import run_by_time, run_in_threads
 from rig.scribe import DirectScribe, Scribe, ThreadedScribe
 from rig.start_record import start_record
 from rig.stop import StopRequest
+from rig.streaming import StreamingStream, StreamPort, open_ports
+from rig.streaming.port import close_ports
 from rig.streams import BusStream, CameraStream, Span, Stream
 from rig.tally import Tally
+from rig.taps import Taps
+from rig.zeros import Zeros, check_zeros, zero_values
 
 LEAD_S = 0.25
 """From the start record's clock anchor to the run's origin: time to get it onto the disk."""
@@ -71,6 +77,10 @@ def record(
     rig_file: str = "rig.toml",
     stop: StopRequest | None = None,
     watch: Watch | None = None,
+    alarm: Alarm | None = None,
+    zeros: Zeros | None = None,
+    taps: Taps | None = None,
+    beside_rig: Mapping[str, bytes] | None = None,
 ) -> Recording:
     """Record one run.
 
@@ -100,6 +110,14 @@ def record(
         A wish to end before the time.
     watch
         Called now and then on a real clock with the counts and the run's time.
+    alarm
+        Told when an overload begins; must not wait.
+    zeros
+        Host-side zeros of the cells, as `rig zero` took them.
+    taps
+        Where the user's sync taps come in.
+    beside_rig
+        Files that the rig file names, for the run folder: `cdpr8.rigfile.files_beside`.
 
     Returns
     -------
@@ -121,7 +139,9 @@ def record(
     try:
         _require_empty(folder)
         machine = machine or open_machine(rig, excitation, clock, seed=seed)
-        session = _Session(machine, rig, clock, stop, excitation)
+        session = _Session(machine, rig, clock, stop, excitation, alarm, zero_values(zeros))
+        session.taps = taps
+        check_zeros(zeros, {each.cable: each.identity.serial_number for each in session.stations})
         if stop.requested:
             raise KeyboardInterrupt  # nothing has been recorded
         now_s = clock.monotonic_s()
@@ -134,10 +154,15 @@ def record(
             rig_file=rig_file,
             reconstruction=reconstruction,
             seed=seed,
+            zeros=zeros,
             anchor=ClockAnchor(t_s=-LEAD_S, wall=clock.wall()),
         )
-        writer = RunWriter(folder, start, rig_text)
-        stop_record, fault = session.run(writer, now_s + LEAD_S, watch)
+        writer = RunWriter(folder, start, rig_text, beside_rig)
+        try:
+            reserve = Reserve(folder)
+        except OSError as error:
+            raise _disk_fault(error, folder) from None
+        stop_record, fault = session.run(writer, reserve, now_s + LEAD_S, watch)
         return Recording(folder, start, stop_record, fault)
     finally:
         if machine is not None:
@@ -154,19 +179,29 @@ class _Session:
         clock: Clock,
         stop: StopRequest,
         excitation: Excitation,
+        alarm: Alarm | None,
+        zeros: dict[int, float],
     ) -> None:
+        self._alarm = alarm
+        self.taps: Taps | None = None
         self._machine = machine
         self._clock = clock
         self._stop = stop
         self._excitation = excitation
         self._tally = Tally()
-        self._bus = Bus(machine.transport, rig)
-        self.stations = self._bus.start()
+        self._bus: Bus | None = None
+        self._ports: tuple[StreamPort, ...] = ()
+        if machine.ports:
+            self._ports = open_ports(machine.ports, rig, zeros)
+            self.stations = tuple(port.station for port in self._ports)
+        else:
+            self._bus = Bus(machine.transport, rig, zeros)
+            self.stations = self._bus.start()
         if machine.camera is not None:
             import av  # noqa: F401  # now, not between the start record and the first sample
 
     def run(
-        self, writer: RunWriter, origin_s: float, watch: Watch | None
+        self, writer: RunWriter, reserve: Reserve, origin_s: float, watch: Watch | None
     ) -> tuple[StopRecord, ToolkitError | None]:
         """Record from the origin until the end, a wish to stop, or a fault."""
         span = Span(origin_s, origin_s + self._excitation.duration_s)
@@ -190,22 +225,33 @@ class _Session:
         except OSError as error:
             fault = _disk_fault(error, writer.folder)
         ended_s = self._clock.monotonic_s() - origin_s
+        anchor = ClockAnchor(t_s=round(ended_s, 6), wall=self._clock.wall())
+        reserve.release()
+        if isinstance(fault, DataError):
+            scribe.event(ended_s, EventKind.DISK_FULL, fault.what)
         if self._stop.requested:
             scribe.event(ended_s, EventKind.INTERRUPTED, "stopped by the user")
         with suppress(DeviceError):
-            self._bus.stop()
-        return self._finish(writer, scribe, ended_s, fault)
+            if self._bus is not None:
+                self._bus.stop()
+        close_ports(self._ports)
+        return self._finish(writer, scribe, anchor, fault)
 
     def _streams(self, scribe: Scribe, span: Span) -> list[Stream]:
         machine, tally = self._machine, self._tally
-        streams: list[Stream] = [BusStream(self._bus, self.stations, scribe, tally, span)]
+        intake = Intake(scribe, tally, span.origin_s, self._alarm)
+        streams: list[Stream] = (
+            [StreamingStream(self._ports, intake, span, self._clock)]
+            if self._bus is None
+            else [BusStream(self._bus, self.stations, intake, span)]
+        )
         if machine.camera is not None:
             machine.camera.start(span.origin_s)
             streams.append(CameraStream(machine.camera, scribe, tally, span))
         clock = self._clock
         own = VirtualClock(clock.epoch, clock.now_s) if isinstance(clock, VirtualClock) else clock
         announced = announcements(self._excitation, machine.motion_known)
-        streams.append(AnnouncementStream(announced, own, scribe, span))
+        streams.append(AnnouncementStream(announced, own, scribe, span, self.taps))
         return streams
 
     def _look(self, watch: Watch | None, span: Span) -> Callable[[], None] | None:
@@ -214,7 +260,7 @@ class _Session:
         return lambda: watch(self._tally, self._clock.monotonic_s() - span.origin_s)
 
     def _finish(
-        self, writer: RunWriter, scribe: Scribe, ended_s: float, fault: ToolkitError | None
+        self, writer: RunWriter, scribe: Scribe, anchor: ClockAnchor, fault: ToolkitError | None
     ) -> tuple[StopRecord, ToolkitError | None]:
         scribe.close()
         if fault is None and isinstance(scribe.failure, OSError):
@@ -222,11 +268,11 @@ class _Session:
         tally = self._tally
         record_ = StopRecord(
             reason=_reason(self._stop, fault),
-            t_s=round(ended_s, 6),
+            t_s=anchor.t_s,
             samples=tally.samples,
             frames=tally.frames,
             lost=tally.lost,
-            clock_anchor=ClockAnchor(t_s=round(ended_s, 6), wall=self._clock.wall()),
+            clock_anchor=anchor,
         )
         try:
             writer.stop(record_)

@@ -7,7 +7,9 @@ neither a slow disk nor a slow encoder stalls the bus.
 
 import queue
 import threading
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -21,6 +23,9 @@ SYNC_S = 0.25
 
 FLUSH_S = 0.05
 """Tables are handed to the operating system this often: what kill -9 can take at most."""
+
+BATCH_S = 0.02
+"""Lines are written in batches this often, within `FLUSH_S`."""
 
 FRAMES_WAITING = 64
 """Frames that may wait for the encoder; beyond, frames are dropped, counted and flagged."""
@@ -174,6 +179,10 @@ class ThreadedScribe:
         video.join()
         self._lines.put(None)
         tables.join()
+        # A disk that was full has some room again by now: what still waits may yet be written.
+        if self._failure is not None:
+            with suppress(OSError):
+                self._write_waiting()
 
     def _guard(self, work: Callable[[], None]) -> None:
         try:
@@ -186,14 +195,11 @@ class ThreadedScribe:
         tables = (writer.tension, writer.events)
         flushed_s = synced_s = self._clock.monotonic_s()
         while True:
-            try:
-                line = self._lines.get(timeout=FLUSH_S)
-            except queue.Empty:
-                pass
-            else:
-                if line is None:
-                    return
-                self._write_line(line)
+            # In batches: to be woken for every value would take the bus its turn a thousand
+            # times a second.
+            time.sleep(BATCH_S)
+            if self._write_waiting():
+                return
             now_s = self._clock.monotonic_s()
             if now_s - synced_s >= SYNC_S:
                 _each(tables, TableWriter.sync)
@@ -201,6 +207,15 @@ class ThreadedScribe:
             elif now_s - flushed_s >= FLUSH_S:
                 _each(tables, TableWriter.flush)
                 flushed_s = now_s
+
+    def _write_waiting(self) -> bool:
+        """Write the lines that wait; True where the last of all was among them."""
+        while not self._lines.empty():
+            line = self._lines.get()
+            if line is None:
+                return True
+            self._write_line(line)
+        return False
 
     def _write_line(self, line: "Sample | _Event") -> None:
         if isinstance(line, Sample):

@@ -7,9 +7,10 @@ import uuid
 from cdpr8.provenance import versions
 from cdpr8.rigfile import Excitation, Rig
 from cdpr8.runfolder import CameraStart, ClockAnchor, Node, StartRecord
-from rig.bus import Station
 from rig.camera import Camera
 from rig.machine import Machine
+from rig.station import Station
+from rig.zeros import Zeros, taken
 
 
 def start_record(
@@ -23,6 +24,7 @@ def start_record(
     reconstruction: str | None,
     seed: int,
     anchor: ClockAnchor,
+    zeros: Zeros | None = None,
 ) -> StartRecord:
     """The start record of a run.
 
@@ -40,6 +42,8 @@ def start_record(
         Of a simulated rig.
     anchor
         The run's time against wall time.
+    zeros
+        Host-side zeros of the cells.
     """
     # From the wall time, so unique; and from what repeats a run, so repeated with it.
     name = f"{anchor.wall.isoformat()}\n{rig_text}\n{excitation}\n{seed}"
@@ -51,7 +55,7 @@ def start_record(
         rig_sha256=hashlib.sha256(rig_text.encode("utf-8")).hexdigest(),
         excitation=excitation,
         motion_start_known=machine.motion_known,
-        nodes=tuple(_node(station) for station in stations),
+        nodes=tuple(_node(station, zeros) for station in stations),
         camera=_camera(machine.camera, rig),
         clock_anchor=anchor,
         seed=seed if machine.simulated else None,
@@ -59,7 +63,7 @@ def start_record(
     )
 
 
-def _node(station: Station) -> Node:
+def _node(station: Station, zeros: Zeros | None) -> Node:
     cut_off_hz = station.profile.cut_offs_hz[int(station.settings["ASF"])]
     return Node.model_validate(
         {
@@ -69,6 +73,8 @@ def _node(station: Station) -> Node:
             "settings": station.settings,
             "profile": station.profile.name,
             "value_bytes": station.format.length,
+            "zero_mv_per_v": station.scaling.zero_mv_per_v,
+            "zero_taken": taken(zeros, station.cable),
             "output_period_s": station.period_s,
             # First-order behaviour is a fair model of the filter (protocol note, section 8);
             # stored, never applied to the times in tension.csv.

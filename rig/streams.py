@@ -6,19 +6,27 @@ A stream is stepped by a thread of its own on a real clock, and by a scheduler o
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from cdpr8.clock import Clock
-from cdpr8.runfolder import BAD_TENSION, EventKind, FrameFlag, TensionStatus
+from cdpr8.errors import DeviceError
+from cdpr8.runfolder import EventKind, FrameFlag
 from rig.amplifier.frame import BadFrameError
-from rig.bus import Bus, Station, Value
-from rig.camera import Camera
+from rig.bus import Bus
+from rig.camera import Camera, Image
+from rig.confirmation import Confirmation
+from rig.intake import Intake
 from rig.quarantine import Quarantine
-from rig.scribe import Sample, Scribe
+from rig.scribe import Scribe
+from rig.station import Station
 from rig.tally import Tally
+from rig.transport import LineLostError
 
-STALE_S = 0.5
-"""A value that has not changed by one digit for so long is no live measurement."""
+REOPEN_EVERY_S = 0.2
+"""A port that vanished is looked for this often."""
 
-_OVERFLOW = TensionStatus.NET_OVERFLOW | TensionStatus.GROSS_OVERFLOW | TensionStatus.ADC_OVERFLOW
+PAUSE_S = 0.5
+"""An exchange that took longer than this: the computer stood still, not the line."""
 
 
 @dataclass(frozen=True)
@@ -51,27 +59,26 @@ class BusStream:
     ----------
     bus, stations
         Started.
-    scribe, tally
-        Take what comes.
+    intake
+        Takes what comes.
     span
         Of the run.
     """
 
     name = "bus"
 
-    def __init__(
-        self, bus: Bus, stations: tuple[Station, ...], scribe: Scribe, tally: Tally, span: Span
-    ) -> None:
+    def __init__(self, bus: Bus, stations: tuple[Station, ...], intake: Intake, span: Span) -> None:
         self._bus = bus
         self._stations = stations
-        self._scribe = scribe
-        self._tally = tally
+        self._intake = intake
         self._span = span
         self._clock: Clock = bus.transport.clock
         self._turn = 0
         self._quarantine = Quarantine()
-        self._changed: dict[int, tuple[int, float]] = {}
-        self._overloaded: set[int] = set()
+        self._confirmation = Confirmation()
+        self._chosen: Station | None = None
+        self._again: Station | None = None
+        self._line_lost_s: float | None = None
 
     @property
     def due_s(self) -> float:
@@ -79,21 +86,35 @@ class BusStream:
         return self._clock.monotonic_s()
 
     def step(self) -> bool:
-        """Take the next cable's value, or try a lost node."""
+        """Take the next cable's value, or try a lost node or line."""
         now_s = self._clock.monotonic_s()
         if now_s >= self._span.end_s:
+            self._forget_doubts()
             return False
-        station = self._next(now_s)
+        try:
+            if self._line_lost_s is not None:
+                self._reopen(self._line_lost_s)
+            else:
+                self._serve(now_s)
+        except LineLostError as fault:
+            self._lost(fault)
+        return True
+
+    def _serve(self, now_s: float) -> None:
+        station = self._chosen or self._next(now_s)
+        self._chosen = None
         if station is None:
             self._clock.sleep_until(min(self._quarantine.next_retry_s(), self._span.end_s))
         elif self._quarantine.holds(station.cable):
             self._retry(station)
         else:
-            self._take(station)
-        return True
+            self._take(station, now_s)
 
     def _next(self, now_s: float) -> Station | None:
-        """The next station in turn that is not lost, or is to be tried again."""
+        """One whose value is doubted, else the next in turn that is not lost or is due."""
+        if self._again is not None:
+            station, self._again = self._again, None
+            return station
         for _ in self._stations:
             station = self._stations[self._turn]
             self._turn = (self._turn + 1) % len(self._stations)
@@ -102,31 +123,48 @@ class BusStream:
                 return station
         return None
 
-    def _take(self, station: Station) -> None:
+    def _take(self, station: Station, began_s: float) -> None:
+        # Who comes next is settled before, so that it is asked before this value is dealt with.
+        chosen = self._chosen = self._next(began_s)
+        lost = chosen is None or self._quarantine.holds(chosen.cable)
         try:
-            value = self._bus.take(station)
+            value = self._bus.take(station, None if lost else chosen)
         except BadFrameError as fault:
             self._failed(station, fault)
-            return
-        self._quarantine.answered(station.cable)
-        self._record(station, value)
+        else:
+            self._quarantine.answered(station.cable)
+            for settled, believed in self._confirmation.judge(
+                station.cable, station.scaling, value
+            ):
+                self._intake.value(station, settled, believed)
+            if self._confirmation.doubts(station.cable):
+                self._again = station
+        now_s = self._clock.monotonic_s()
+        if now_s - began_s > PAUSE_S:
+            self._intake.lose("pause")
+            self._intake.event(
+                now_s, EventKind.PAUSE, f"the recorder stood still for {now_s - began_s:.2f} s"
+            )
 
     def _failed(self, station: Station, fault: BadFrameError) -> None:
         now_s = self._clock.monotonic_s()
         cable = station.cable
         if fault.raw:
-            self._tally.lose("bad_frame")
-            self._event(now_s, EventKind.BAD_FRAME, str(fault), cable)
+            self._intake.lose("bad_frame")
+            self._intake.event(now_s, EventKind.BAD_FRAME, str(fault), cable)
         else:
-            self._tally.lose("no_answer")
+            self._intake.lose("no_answer")
         if self._quarantine.failed(cable, now_s):
-            self._tally.lose("node_lost")
-            self._event(
-                now_s,
-                EventKind.NODE_LOST,
-                f"amplifier {station.address:02d}: no value in 3 requests; the last: {fault}",
-                cable,
-            )
+            self._lose_node(station, now_s, f"no value in 3 requests; the last: {fault}")
+            if self._chosen is station:
+                self._chosen = None
+
+    def _lose_node(self, station: Station, now_s: float, why: str) -> None:
+        self._intake.lose("node_lost")
+        self._intake.event(
+            now_s, EventKind.NODE_LOST, f"amplifier {station.address:02d}: {why}", station.cable
+        )
+        self._forget(station)
 
     def _retry(self, station: Station) -> None:
         cable = station.cable
@@ -135,75 +173,59 @@ class BusStream:
             return
         now_s = self._clock.monotonic_s()
         since_s = self._quarantine.back(cable)
-        self._changed.pop(cable, None)
-        self._event(
+        self._intake.forget(cable)
+        self._intake.event(
             now_s,
             EventKind.NODE_BACK,
             f"amplifier {station.address:02d} gives values again",
             cable,
         )
-        self._event(
+        self._gap(since_s, now_s, cable)
+
+    def _lost(self, fault: DeviceError) -> None:
+        now_s = self._clock.monotonic_s()
+        self._chosen = self._again = None
+        if self._line_lost_s is None:
+            self._line_lost_s = now_s
+            self._intake.lose("line_lost")
+            self._intake.event(now_s, EventKind.LINE_LOST, fault.what)
+            self._forget_doubts()
+
+    def _reopen(self, since_s: float) -> None:
+        try:
+            self._bus.transport.reopen()
+            ready = self._bus.resume(self._stations)
+        except DeviceError:
+            now_s = self._clock.monotonic_s()
+            self._clock.sleep_until(min(now_s + REOPEN_EVERY_S, self._span.end_s))
+            return
+        now_s = self._clock.monotonic_s()
+        self._line_lost_s = None
+        self._intake.event(now_s, EventKind.LINE_BACK, f"{len(ready)} amplifiers set up again")
+        self._gap(since_s, now_s, None)
+        for station in self._stations:
+            self._intake.forget(station.cable)
+            if station not in ready and not self._quarantine.holds(station.cable):
+                self._quarantine.lose(station.cable, now_s)
+                self._lose_node(station, now_s, "not there when the line came back")
+
+    def _gap(self, since_s: float, now_s: float, cable: int | None) -> None:
+        origin_s = self._span.origin_s
+        self._intake.event(
             now_s,
             EventKind.GAP,
-            f"no values from {since_s - self._span.origin_s:.3f} s "
-            f"to {now_s - self._span.origin_s:.3f} s",
+            f"no values from {since_s - origin_s:.3f} s to {now_s - origin_s:.3f} s",
             cable,
         )
 
-    def _record(self, station: Station, value: Value) -> None:
-        cable, reading = station.cable, value.reading
-        tension_n = station.scaling.tension_n(reading.digits)
-        status = reading.status
-        if reading.clamped:
-            status |= TensionStatus.ADC_OVERFLOW
-        if station.scaling.overloaded(tension_n):
-            status |= TensionStatus.HOST_OVERLOAD
-        if self._stale(cable, reading.digits, value.received_s):
-            status |= TensionStatus.STALE
-        self._watch_overload(station, tension_n, status, value.received_s)
-        origin_s = self._span.origin_s
-        self._scribe.sample(
-            Sample(
-                t_s=value.sampled_s - origin_s,
-                cable=cable,
-                digits=reading.digits,
-                tension_n=tension_n,
-                status=int(status),
-                request_s=value.request_s - origin_s,
-                received_s=value.received_s - origin_s,
-            )
-        )
-        self._tally.samples[cable] += 1
-        if status & BAD_TENSION:
-            self._tally.lose("flagged")
-        else:
-            self._tally.tension_n[cable] = tension_n
+    def _forget_doubts(self) -> None:
+        for station in self._stations:
+            self._forget(station)
 
-    def _stale(self, cable: int, digits: int, now_s: float) -> bool:
-        last = self._changed.get(cable)
-        if last is None or last[0] != digits:
-            self._changed[cable] = (digits, now_s)
-            return False
-        return now_s - last[1] > STALE_S
-
-    def _watch_overload(
-        self, station: Station, tension_n: float, status: int, now_s: float
-    ) -> None:
-        cable = station.cable
-        over = bool(status & (_OVERFLOW | TensionStatus.HOST_OVERLOAD))
-        if over and cable not in self._overloaded:
-            why = (
-                f"the amplifier flags an overflow (status {status & 0xFF:#04x})"
-                if status & _OVERFLOW
-                else f"above 120 % of the cell's {station.scaling.nominal_force_n:g} N"
-            )
-            self._event(now_s, EventKind.OVERLOAD, f"{tension_n:.2f} N: {why}", cable)
-            self._overloaded.add(cable)
-        elif not over:
-            self._overloaded.discard(cable)
-
-    def _event(self, now_s: float, kind: EventKind, detail: str, cable: int) -> None:
-        self._scribe.event(now_s - self._span.origin_s, kind, detail, cable)
+    def _forget(self, station: Station) -> None:
+        """Record a doubted value as what it is: not confirmed."""
+        for value, believed in self._confirmation.forget(station.cable):
+            self._intake.value(station, value, believed)
 
 
 class CameraStream:
@@ -226,6 +248,7 @@ class CameraStream:
         self._scribe = scribe
         self._tally = tally
         self._span = span
+        self._last_image: Image | None = None
 
     @property
     def due_s(self) -> float:
@@ -252,5 +275,10 @@ class CameraStream:
             self._scribe.event(
                 t_s, EventKind.FRAME_DROPPED, f"{frame.dropped_before} before this frame"
             )
+        if self._last_image is not None and np.array_equal(frame.image, self._last_image):
+            # A live sensor has noise: the same picture twice is the same exposure twice.
+            flags |= FrameFlag.REPEATED
+            self._tally.lose("frame_repeated")
+        self._last_image = frame.image
         self._scribe.frame(frame.image, t_s, int(flags))
         return True

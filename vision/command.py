@@ -59,8 +59,9 @@ def track(
         bool, typer.Option("--self-calibrate", help="run: find where the markers really are")
     ] = False,
     row_delay: Annotated[
-        float, typer.Option(help="run: rolling shutter, seconds from row to row")
-    ] = 0.0,
+        float | None,
+        typer.Option(help="run: rolling shutter, seconds from row to row", show_default="rig file"),
+    ] = None,
     follow: Annotated[
         bool, typer.Option("--follow", help="run: one that is still being recorded")
     ] = False,

@@ -64,7 +64,7 @@ def track_run(
     refinement: Refinement | None = None,
     zero: "Run | Literal['rest'] | None" = None,
     self_calibrate: bool = False,
-    row_delay_s: float = 0.0,
+    row_delay_s: float | None = None,
     step: Callable[[], None] | None = None,
     notes: list[str] | None = None,
 ) -> "pd.DataFrame":
@@ -86,7 +86,7 @@ def track_run(
         Find where the plate's markers really are, from this run, and track again with that.
     row_delay_s
         Rolling shutter: from one row to the next; stamps are those of the middle row, and times in
-        the table become those of the plate's own.
+        the table become those of the plate's own. None takes the rig file's.
     step
         Called once a frame.
     notes
@@ -112,9 +112,10 @@ def track_run(
     if isinstance(zero, Run):
         tracker = Tracker(camera, plate, refinement)
         still = _Still(zero, _seen_in(zero, tracker, camera, None, notes))
-    return _platform_poses(
-        run, seen, camera, plate, rig or run.rig, still or zero, row_delay_s, notes
-    )
+    machine = rig or run.rig
+    if row_delay_s is None:
+        row_delay_s = machine.camera.row_delay_s if machine.camera else 0.0
+    return _platform_poses(run, seen, camera, plate, machine, still or zero, row_delay_s, notes)
 
 
 def camera_and_plate(run: Run, rig: Rig | None = None) -> tuple[CameraModel, Plate]:

@@ -130,6 +130,9 @@ class Camera(Section):
     source: str = "simulated"
     fps: float = Field(default=16.0, gt=0.0)
     exposure_s: float = Field(default=0.005, gt=0.0)
+    row_delay_s: float = Field(
+        default=0.0, ge=0.0, description="rolling shutter: from one row to the next; 0: global"
+    )
     intrinsics: Intrinsics | Annotated[str, Field(pattern=r"^[^/\\\\]+$")] = Field(
         description="a table, or the name of a file beside the rig file"
     )

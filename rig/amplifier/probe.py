@@ -5,7 +5,7 @@ Manuals and drivers disagree on which formats carry CR LF (section 5, "ambiguiti
 
 from cdpr8.errors import DeviceError
 from rig.amplifier import message
-from rig.amplifier.dialogue import SETTLE_S, Dialogue
+from rig.amplifier.dialogue import SETTLE_S, TRIES, Dialogue
 from rig.amplifier.frame import BadFrameError, FrameFormat
 
 VALUES = 16
@@ -29,8 +29,28 @@ def probe_format(dialogue: Dialogue, address: int, cof: int, csm: int) -> FrameF
     Raises
     ------
     DeviceError
-        No format of this COF fits all of `VALUES` answers, or more than one does.
+        No format of this COF fits all of `VALUES` answers, or more than one does, in three tries:
+        a computer that stood still for a moment is not an amplifier at fault.
     """
+    for _ in range(TRIES):
+        fitting, raws, late = _probe(dialogue, address, cof, csm)
+        if len(fitting) == 1 and not late:
+            return fitting[0]
+    shown = ", ".join(raw.hex(" ").upper() or "nothing" for raw in raws[:3])
+    raise DeviceError(
+        f"amplifier {address:02d} gives values that fit {len(fitting)} formats of COF {cof}: "
+        f"{shown}" + (f"; then {late.hex(' ').upper()}" if late else ""),
+        allowed="values of 2 or 4 bytes, all with CR LF or all without",
+        where=dialogue.transport.name,
+        remedy="check that [bus] output_format is a bus-mode code such as 24, "
+        "and the wiring if values are cut",
+    )
+
+
+def _probe(
+    dialogue: Dialogue, address: int, cof: int, csm: int
+) -> tuple[list[FrameFormat], list[bytes], bytes]:
+    """Formats that fit all values, the values, and what came after them."""
     dialogue.settle()
     candidates = [FrameFormat.of_output_format(cof, csm, crlf) for crlf in (True, False)]
     # The first answer is taken to its end in silence, which tells the length; the others quickly.
@@ -38,17 +58,7 @@ def probe_format(dialogue: Dialogue, address: int, cof: int, csm: int) -> FrameF
     raws += [_value(dialogue, address, len(raws[0]), 0.0) for _ in range(VALUES - 1)]
     late = dialogue.settle()
     fitting = [format_ for format_ in candidates if all(_fits(format_, raw) for raw in raws)]
-    if len(fitting) != 1 or late:
-        shown = ", ".join(raw.hex(" ").upper() or "nothing" for raw in raws[:3])
-        raise DeviceError(
-            f"amplifier {address:02d} gives values that fit {len(fitting)} formats of COF {cof}: "
-            f"{shown}" + (f"; then {late.hex(' ').upper()}" if late else ""),
-            allowed="values of 2 or 4 bytes, all with CR LF or all without",
-            where=dialogue.transport.name,
-            remedy="check that [bus] output_format is a bus-mode code such as 24, "
-            "and the wiring if values are cut",
-        )
-    return fitting[0]
+    return fitting, raws, late
 
 
 def _value(dialogue: Dialogue, address: int, count: int, quiet_s: float) -> bytes:

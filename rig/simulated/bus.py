@@ -27,11 +27,19 @@ class SimulatedBus:
         What the master's port is set to; nodes set otherwise do not understand it.
     faults
         What the line does to bytes.
+    echo
+        Whether the master hears what it sends, as 2-wire adapters do.
     """
 
     def __init__(
-        self, nodes: Sequence[SimulatedNode], line: LineSettings, faults: LineFaults | None = None
+        self,
+        nodes: Sequence[SimulatedNode],
+        line: LineSettings,
+        faults: LineFaults | None = None,
+        *,
+        echo: bool = False,
     ) -> None:
+        self._echo = echo
         self.nodes = tuple(nodes)
         self.line = line
         self.faults = faults
@@ -42,10 +50,12 @@ class SimulatedBus:
         self._outgoing: deque[Chunk] = deque()
 
     def hear(self, data: bytes, start_s: float) -> None:
-        """Bytes from the master; the line is full duplex (4 wires), so nothing is echoed."""
+        """Bytes from the master."""
         char_s = self.line.char_s
         start_s = max(start_s, self._request_free_s)
         self._request_free_s = start_s + len(data) * char_s
+        if self._echo:
+            self._send(data, start_s)
         damaged = False
         if self.faults is not None:
             data, damaged = self.faults.spoil(data, self.line.parity == "even")

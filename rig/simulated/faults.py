@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+KINDS = ("flip", "drop", "insert", "twist")
+
 
 @dataclass
 class LineFaults:
@@ -19,6 +21,8 @@ class LineFaults:
         Probability that a byte is lost.
     insert
         Probability that a random byte comes before one.
+    twist
+        Probability that two bits of a byte are turned, which no parity bit betrays.
     count
         How many faults have been done, by kind.
     """
@@ -27,12 +31,13 @@ class LineFaults:
     flip: float = 0.0
     drop: float = 0.0
     insert: float = 0.0
-    count: dict[str, int] = field(default_factory=lambda: {"flip": 0, "drop": 0, "insert": 0})
+    twist: float = 0.0
+    count: dict[str, int] = field(default_factory=lambda: dict.fromkeys(KINDS, 0))
 
     def spoil(self, data: bytes, has_parity: bool) -> tuple[bytes, bool]:
         """The bytes as they arrive, and whether the receiver sees a parity error in them."""
         draws = self.generator.random(len(data))
-        if not (draws < self.flip + self.drop + self.insert).any():
+        if not (draws < self.flip + self.drop + self.insert + self.twist).any():
             return data, False
         spoiled = bytearray()
         damaged = False
@@ -46,6 +51,10 @@ class LineFaults:
             elif draw < self.flip + self.drop + self.insert:
                 spoiled += bytes([int(self.generator.integers(256)), byte])
                 self.count["insert"] += 1
+            elif draw < self.flip + self.drop + self.insert + self.twist:
+                one, other = self.generator.choice(8, 2, replace=False)
+                spoiled.append(byte ^ (1 << int(one)) ^ (1 << int(other)))
+                self.count["twist"] += 1
             else:
                 spoiled.append(byte)
         return bytes(spoiled), damaged

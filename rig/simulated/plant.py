@@ -23,8 +23,8 @@ from model.motion import RampedSine
 
 Array = NDArray[np.float64]
 
-PULLEY_FRICTION_N = (0.278, 0.278, 0.352, 0.352, 0.352, 0.232, 0.232, 0.352)
-"""Coulomb friction of the simulated rig's pulleys, cable by cable: see sample_data/make_run01.py."""
+PULLEY_FRICTION_N = (0.207, 0.207, 0.563, 0.563, 0.563, 0.192, 0.192, 0.563)
+"""Coulomb friction of the simulated pulleys, cable by cable: see sample_data/make_run01.py."""
 
 BRISTLE_LENGTH_M = 5e-5
 """Deflection of the bristles at which a pulley slips."""

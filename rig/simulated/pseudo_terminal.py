@@ -1,15 +1,23 @@
 """The simulated bus behind a pseudo-terminal, paced in real time: pyserial's whole path is real."""
 
+import ctypes
 import os
 import select
+import sys
 import threading
 import tty
+from collections import deque
+from pathlib import Path
 
 from cdpr8.clock import Clock
+from rig.schedule import prefer_this_thread
 from rig.simulated.bus import SimulatedBus
 
 MOST_LATENESS_S = 0.002
 """Lateness of this thread beyond which it is the computer's trouble, not to be made up for."""
+
+AWAKE_S = 60e-6
+"""Before a byte is due this thread no longer sleeps: to be woken takes about as long."""
 
 STREAM_LOOK_S = 0.005
 """How far ahead values sent unasked are looked for."""
@@ -24,6 +32,8 @@ class PseudoTerminal:
         Hears and speaks.
     clock
         A real clock.
+    link
+        A lasting name for it: a replugged pseudo-terminal has another path.
 
     Attributes
     ----------
@@ -31,17 +41,26 @@ class PseudoTerminal:
         What to open as a serial port.
     """
 
-    def __init__(self, bus: SimulatedBus, clock: Clock) -> None:
+    def __init__(self, bus: SimulatedBus, clock: Clock, link: Path | None = None) -> None:
         self._bus = bus
         self._clock = clock
+        self._link = link
+        self.plug()
+
+    def plug(self) -> None:
+        """Make the port appear."""
         # The slave stays open here, or the master would fail whenever no client has it open.
         self._master, self._slave = os.openpty()
         tty.setraw(self._master)
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)
         self.path = os.ttyname(self._slave)
+        if self._link is not None:
+            self._link.unlink(missing_ok=True)
+            self._link.symlink_to(self.path)
+            self.path = str(self._link)
         self._wake, self._waker = os.pipe()
-        self._late_s = 0.0
+        self._writes: deque[float] = deque()
         self._thread = threading.Thread(target=self._serve, name="simulated bus", daemon=True)
         self._thread.start()
 
@@ -52,14 +71,17 @@ class PseudoTerminal:
             self._thread.join()
         for descriptor in (self._master, self._slave, self._wake, self._waker):
             os.close(descriptor)
+        if self._link is not None:
+            self._link.unlink(missing_ok=True)
 
     def _serve(self) -> None:
+        _wake_up_in_time()
+        prefer_this_thread()
         while True:
             now_s = self._clock.monotonic_s()
             pending = self._bus.speak(now_s + STREAM_LOOK_S)
             while pending and pending[0].last_s <= now_s:
                 chunk = pending.popleft()
-                self._late_s = min(now_s - chunk.last_s, MOST_LATENESS_S)
                 self._write(chunk.data)
             wait_s = self._wait_s(pending[0].last_s - now_s if pending else None)
             ready, _, _ = select.select([self._master, self._wake], [], [], wait_s)
@@ -67,16 +89,28 @@ class PseudoTerminal:
                 return
             if self._master in ready:
                 data = os.read(self._master, 4096)
-                # Our own thread wakes up late by some tens of microseconds, which no line does:
-                # the request is timed as if the last answer had been on time.
-                self._bus.hear(data, self._clock.monotonic_s() - self._late_s)
-                self._late_s = 0.0
+                self._bus.hear(data, self._started_s())
+
+    def written(self, now_s: float) -> None:
+        """Note when the master hands bytes over, before it does."""
+        self._writes.append(now_s)
+
+    def _started_s(self) -> float:
+        """When what was just read began to travel.
+
+        This thread wakes up late by some tens of microseconds, which no line does: where the
+        master said when it wrote, that is the time.
+        """
+        now_s = started_s = self._clock.monotonic_s()
+        while self._writes:
+            started_s = min(started_s, self._writes.popleft())
+        return max(started_s, now_s - MOST_LATENESS_S)
 
     def _wait_s(self, until_due_s: float | None) -> float | None:
         if until_due_s is None:
             streaming = any(node.powered and node.streaming for node in self._bus.nodes)
             return STREAM_LOOK_S if streaming else None
-        return max(0.0, until_due_s)
+        return max(0.0, until_due_s - AWAKE_S)
 
     def _write(self, data: bytes) -> None:
         """A line does not wait: what the reader's buffer does not take is lost (overrun)."""
@@ -84,3 +118,13 @@ class PseudoTerminal:
             os.write(self._master, data)
         except BlockingIOError:
             return
+
+
+def _wake_up_in_time() -> None:
+    """Let this thread's waits end within a microsecond: Linux adds 50 to save power."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
+
+
+_PR_SET_TIMERSLACK = 29
+"""Of <linux/prctl.h>; for the calling thread, in ns."""

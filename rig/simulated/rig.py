@@ -20,7 +20,7 @@ from rig.simulated.exposures import Exposer, ExposureSequence
 from rig.simulated.faults import LineFaults
 from rig.simulated.node import SimulatedNode
 from rig.simulated.signal import Array, Crystal, NodeSignal
-from rig.transport import MemoryTransport, Transport
+from rig.transport import MemoryTransport, Transport, TwoWire
 
 CRYSTAL_PPM = 50.0
 """Crystals of the nodes are off by up to this much, either way."""
@@ -114,21 +114,30 @@ def assemble(
     faults
         What the line does to bytes.
     """
-    bus = SimulatedBus(
-        simulated_nodes(rig, platform, clock.monotonic_s(), seed), line_settings(rig), faults
-    )
-    transport, close = _transport(bus, clock)
+    nodes = simulated_nodes(rig, platform, clock.monotonic_s(), seed)
+    # One line for all amplifiers, or one for each.
+    groups = [(node,) for node in nodes] if rig.bus.streaming else [nodes]
+    lines = [
+        _transport(SimulatedBus(group, line_settings(rig), faults, echo=rig.bus.echo), clock)
+        for group in groups
+    ]
+    transports = tuple(TwoWire(transport) if rig.bus.echo else transport for transport, _ in lines)
     camera: Camera | None = None
     if exposer is not None:
         own = VirtualClock(clock.epoch, clock.now_s) if isinstance(clock, VirtualClock) else clock
         camera = ExposureSequence(exposer, own)
 
     def begin(origin_s: float) -> None:
-        for node in bus.nodes:
+        for node in nodes:
             node.signal.begin(origin_s)
 
+    def close() -> None:
+        for _, close_line in lines:
+            close_line()
+
     return Machine(
-        transport=transport,
+        transport=transports[0],
+        ports=transports if rig.bus.streaming else (),
         camera=camera,
         simulated=True,
         motion_known=True,
@@ -182,6 +191,7 @@ def _transport(bus: SimulatedBus, clock: Clock) -> tuple[Transport, Callable[[],
 
     terminal = PseudoTerminal(bus, clock)
     transport = open_serial_port(terminal.path, bus.line, clock)
+    transport.on_write = terminal.written
 
     def close() -> None:
         transport.close()

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from cdpr8.clock import Clock
+from cdpr8.errors import DeviceError
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,10 @@ class Received:
     damaged: bool = False
 
 
+class LineLostError(DeviceError):
+    """The port vanished under an open line: unplugged, or its adapter reset."""
+
+
 class Transport(Protocol):
     """A half-duplex line with one master: us.
 
@@ -85,6 +90,16 @@ class Transport(Protocol):
 
     def drain(self, quiet_s: float) -> bytes:
         """Throw away, and return, what comes until nothing has come for `quiet_s`."""
+        ...
+
+    def reopen(self) -> None:
+        """Open the same line again after a `LineLostError`.
+
+        Raises
+        ------
+        DeviceError
+            It is not there yet.
+        """
         ...
 
     def close(self) -> None:

@@ -12,6 +12,9 @@ from typing import Protocol
 from cdpr8.clock import Clock
 from rig.transport.line import MAX_DRAIN_S, LineSettings, Received
 
+AHEAD_S = 0.02
+"""The far end is asked for what it sends within this time, then for more."""
+
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
@@ -110,15 +113,21 @@ class MemoryTransport:
 
     def read(self, count: int, deadline_s: float) -> Received:
         """Exactly `count` bytes, or what has come by `deadline_s`."""
-        pending = self._far_end.speak(deadline_s)
         data = b""
         damaged = False
         last_s = deadline_s
-        while pending and len(data) < count:
-            chunk = pending[0]
-            ready = min(chunk.arrived(deadline_s), count - len(data))
-            if ready == 0:
-                break
+        # In steps: a node that streams must not be asked for what a later command will stop.
+        until_s = min(deadline_s, self._clock.monotonic_s() + AHEAD_S)
+        pending = self._far_end.speak(until_s)
+        while len(data) < count:
+            chunk = pending[0] if pending else None
+            ready = 0 if chunk is None else min(chunk.arrived(until_s), count - len(data))
+            if chunk is None or ready == 0:
+                if until_s >= deadline_s:
+                    break
+                until_s = min(deadline_s, until_s + AHEAD_S)
+                pending = self._far_end.speak(until_s)
+                continue
             if ready < len(chunk.data):
                 chunk, pending[0] = chunk.split(ready)
             else:
@@ -152,6 +161,9 @@ class MemoryTransport:
                 break
             data += received.data + self.discard()
         return data
+
+    def reopen(self) -> None:
+        """Nothing to open: memory is always there."""
 
     def close(self) -> None:
         """Nothing to give back."""

@@ -1,12 +1,17 @@
 """A serial port or a pseudo-terminal, through pyserial."""
 
+import errno
+import os
+import select
 import sys
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
-from rig.transport.line import MAX_DRAIN_S, LineSettings, Received
+from rig.transport.line import MAX_DRAIN_S, LineLostError, LineSettings, Received
 from rig.transport.parity_marks import ParityMarks
 
 if TYPE_CHECKING:
@@ -29,6 +34,12 @@ class SerialTransport:
         Stamps the bytes.
     marks
         Undoes the marking of parity errors, where the port marks them.
+
+    Attributes
+    ----------
+    on_write
+        Told when bytes are handed over: a simulated far end starts its line then, and not when
+        its thread wakes up.
     """
 
     def __init__(
@@ -38,6 +49,7 @@ class SerialTransport:
         clock: Clock,
         marks: ParityMarks | None = None,
     ) -> None:
+        self.on_write: Callable[[float], None] | None = None
         self._port = port
         self._line = line
         self._clock = clock
@@ -65,8 +77,14 @@ class SerialTransport:
 
     def write(self, data: bytes) -> None:
         """Hand `data` to the operating system."""
+        if self.on_write is not None:
+            self.on_write(self._clock.monotonic_s())
         try:
-            self._port.write(data)
+            # Past pyserial's layers where that is possible: they cost tens of microseconds, and
+            # the line waits for each request.
+            sent = os.write(self._port.fileno(), data) if os.name == "posix" else 0
+            if sent < len(data):
+                self._port.write(data[sent:])
         except _LOST as error:
             raise self._lost(error) from None
 
@@ -106,22 +124,46 @@ class SerialTransport:
                 break
         return data
 
+    def reopen(self) -> None:
+        """Open the port of the same name again.
+
+        Raises
+        ------
+        DeviceError
+            It is not there yet, or refuses the settings.
+        """
+        self.close()
+        self._port, self._marks = _open(self.name, self._line)
+
     def close(self) -> None:
         """Close the port."""
-        self._port.close()
+        with suppress(*_LOST):
+            self._port.close()
 
     def _take(self, count: int) -> tuple[bytes, bool]:
         """At most `count` bytes within `POLL_S`, and whether one of them was damaged."""
         try:
-            raw = self._port.read(count)
+            raw = self._read(count)
         except _LOST as error:
             raise self._lost(error) from None
         if self._marks is None:
             return raw, False
         return self._marks.undo(raw)
 
-    def _lost(self, error: Exception) -> DeviceError:
-        return DeviceError(
+    def _read(self, count: int) -> bytes:
+        if os.name != "posix":
+            return bytes(self._port.read(count))
+        descriptor = self._port.fileno()
+        ready, _, _ = select.select([descriptor], [], [], POLL_S)
+        if not ready:
+            return b""
+        raw = os.read(descriptor, count)
+        if not raw:
+            raise OSError(errno.EIO, "ready to read, but nothing came")
+        return raw
+
+    def _lost(self, error: Exception) -> LineLostError:
+        return LineLostError(
             f"the port is gone: {error}",
             where=self.name,
             remedy="check the cable and the adapter, then record again; what came is kept",
@@ -145,6 +187,11 @@ def open_serial_port(path: str, line: LineSettings, clock: Clock) -> SerialTrans
     DeviceError
         There is no such port, it is taken, or it refuses the settings.
     """
+    port, marks = _open(path, line)
+    return SerialTransport(port, line, clock, marks)
+
+
+def _open(path: str, line: LineSettings) -> "tuple[serial.Serial, ParityMarks | None]":
     import serial
 
     # A pseudo-terminal has no parity: the kernel drops the bit, and glibc then reports EINVAL on
@@ -165,7 +212,7 @@ def open_serial_port(path: str, line: LineSettings, clock: Clock) -> SerialTrans
         raise _not_opened(path, line, error) from None
     _ask_for_low_latency(port)
     marks = ParityMarks() if parity == "E" and _mark_parity_errors(port) else None
-    return SerialTransport(port, line, clock, marks)
+    return port, marks
 
 
 def serial_ports() -> tuple[str, ...]:

@@ -18,12 +18,20 @@ if __name__ == "__main__":
     rig = load_rig(packaged_rig_path())
     clock = RealClock()
     machine = assemble(rig, WavePlatform(3.0), NoisyExposer(), clock, seed=1)
+    folder = Path(sys.argv[1])
+    begin = machine.begin
+
+    def tell_origin(origin_s: float) -> None:
+        (folder.parent / "origin.txt").write_text(repr(origin_s))
+        begin(origin_s)
+
+    machine.begin = tell_origin
     stop = StopRequest()
     with stop.listening():
         record(
             rig,
             rig_text(),
-            Path(sys.argv[1]),
+            folder,
             excitation=motion(float(sys.argv[2])),
             clock=clock,
             machine=machine,

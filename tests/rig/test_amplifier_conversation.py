@@ -3,16 +3,19 @@
 import pytest
 from rig_stand_ins import Conversation, simulated_line, virtual_clock, with_bus, without_noise
 
+from cdpr8.clock import VirtualClock
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile import Rig
 from rig.amplifier.dialogue import Dialogue, NoAnswerError
+from rig.amplifier.maintenance import change_baud, readdress
 from rig.amplifier.node import NodeClient, Settings
 from rig.amplifier.probe import probe_format
 from rig.amplifier.profile import AD101B, AD104, FIT, Identity, profile_of
 from rig.bus import Bus
+from rig.simulated.bus import SimulatedBus
 from rig.simulated.node import SimulatedNode
 from rig.simulated.rig import simulated_nodes
-from rig.transport import MemoryTransport
+from rig.transport import LineSettings, MemoryTransport
 
 OK = b"0\r\n"
 SET_UP = [
@@ -129,7 +132,7 @@ def test_whether_values_carry_crlf_is_probed(rig: Rig, crlf: bool) -> None:
 
 
 def test_values_that_fit_no_format_are_refused() -> None:
-    script = Conversation([(b";", b""), *[(b"S01;", b"\x27\x10\x00")] * 16, (b";", b"")])
+    script = Conversation([(b";", b""), *[(b"S01;", b"\x27\x10\x00")] * 16, (b";", b"")] * 3)
     with pytest.raises(DeviceError, match="fit 0 formats of COF 24: 27 10 00"):
         probe_format(Dialogue(script), 1, 24, 0)
 
@@ -228,3 +231,59 @@ def test_the_checksum_replaces_the_status_where_there_is_no_parity(rig: Rig) -> 
     station = Bus(transport, plain).start()[0]
     assert station.settings["CSM"] == "1"
     assert simulated_nodes(rig, None, 0.0, 0)[0].settings["PARITY"] == 1
+
+
+def test_readdressing_is_verified_and_saved(rig: Rig) -> None:
+    bus, transport = simulated_line(rig)
+    transport.write(b";S98;STP;")
+    dialogue = Dialogue(transport)
+    assert readdress(dialogue, "SIM0003", 20).serial_number == "SIM0003"
+    bus.nodes[2].power_on(0.0)
+    assert bus.nodes[2].settings["ADR"] == 20
+    with pytest.raises(DeviceError):  # the address is taken: two answer at once
+        readdress(dialogue, "SIM0004", 20)
+    assert bus.nodes[3]._eeprom["ADR"] == 4
+
+
+def test_readdressing_is_sent_as_the_note_says() -> None:
+    script = Conversation(
+        [
+            (b';S98;ADR03,"1234567";', b""),
+            (b";S03;IDN?;", b'HBM,"AD104          ","1234567",P20\r\n'),
+            (b"TDD1;", OK),
+        ]
+    )
+    readdress(Dialogue(script), "1234567", 3)
+    assert script.over
+
+
+def at_speed(bus: SimulatedBus, baud: int) -> MemoryTransport:
+    bus.line = LineSettings(baud, "even")
+    return MemoryTransport(bus, bus.line, virtual_clock_of(bus))
+
+
+def virtual_clock_of(bus: SimulatedBus) -> VirtualClock:
+    clock = virtual_clock()
+    clock.advance(100.0 + bus.line.baud)
+    return clock
+
+
+def test_a_bus_changes_its_speed_together_and_saves_it_last(rig: Rig) -> None:
+    bus, transport = simulated_line(rig)
+    transport.write(b";S98;STP;")
+    addresses = tuple(range(1, 9))
+    change_baud(Dialogue(transport), addresses, 38400, 1, lambda: at_speed(bus, 38400))
+    for node in bus.nodes:
+        node.power_on(0.0)
+        assert (node.settings["BAUD"], node.settings["PARITY"]) == (38400, 1)
+
+
+def test_a_power_cycle_undoes_a_change_of_speed_that_one_node_missed(rig: Rig) -> None:
+    bus, transport = simulated_line(rig)
+    transport.write(b";S98;STP;")
+    bus.nodes[4].powered = False
+    with pytest.raises(DeviceError):
+        change_baud(Dialogue(transport), tuple(range(1, 9)), 38400, 1, lambda: at_speed(bus, 38400))
+    for node in bus.nodes:
+        node.power_on(0.0)
+        assert node.settings["BAUD"] == 115200

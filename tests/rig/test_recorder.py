@@ -18,7 +18,7 @@ from rig_stand_ins import (
 
 from cdpr8.errors import DataError, DeviceError
 from cdpr8.rigfile import Rig
-from cdpr8.runfolder import load_run, read_video
+from cdpr8.runfolder import FrameFlag, load_run, read_video
 from rig.machine import open_machine
 from rig.recorder import LEAD_S, record
 from rig.simulated import open_rig
@@ -220,3 +220,19 @@ def test_a_run_stopped_before_its_first_frame_loads(rig: Rig, tmp_path: Path) ->
     )
     run = load_run(tmp_path / "run")
     assert (run.stop.reason, run.stop.frames, len(run.tension)) == ("interrupted", 0, 0)
+
+
+def test_a_picture_that_comes_twice_is_flagged(rig: Rig, tmp_path: Path) -> None:
+    class Frozen(NoisyExposer):
+        def expose(self, t_mid_s: float) -> np.ndarray:
+            if 0.5 < t_mid_s < 0.7:
+                return np.full((self.height_px, self.width_px), 7, np.uint8)
+            return super().expose(t_mid_s)
+
+    clock = virtual_clock()
+    machine = assemble(rig, WavePlatform(), Frozen(), clock)
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(1.0), clock=clock, machine=machine
+    )
+    flags = load_run(tmp_path / "run").frames["flags"].to_numpy()
+    assert (flags & FrameFlag.REPEATED > 0).sum() == recording.stop.lost["frame_repeated"] == 3

@@ -5,6 +5,7 @@ import tty
 from collections import deque
 from collections.abc import Iterator
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -12,9 +13,18 @@ from hypothesis import strategies as st
 from rig_stand_ins import simulated_line, virtual_clock
 
 from cdpr8.clock import RealClock
-from cdpr8.errors import DeviceError, ExitCode
+from cdpr8.errors import DataError, DeviceError, ExitCode
 from cdpr8.rigfile import Rig
-from rig.transport import Chunk, LineSettings, MemoryTransport, open_serial_port
+from rig.bus import Bus
+from rig.transport import (
+    Chunk,
+    LineSettings,
+    MemoryTransport,
+    RecordedTransport,
+    TracingTransport,
+    Transport,
+    open_serial_port,
+)
 from rig.transport.parity_marks import ParityMarks
 
 LINE = LineSettings(115200, "even")
@@ -160,3 +170,24 @@ def test_an_answer_may_be_read_in_pieces_and_partly_by_its_deadline() -> None:
     clock.sleep_until(1.41)
     assert transport.discard() == b"de"
     assert transport.drain(0.5) == b"f"
+
+
+def test_a_recorded_conversation_repeats_without_the_amplifiers(rig: Rig, tmp_path: Path) -> None:
+    def converse(transport: Transport) -> list[object]:
+        bus = Bus(transport, rig)
+        stations = bus.start()
+        values = [bus.take(stations[number % 8]) for number in range(40)]
+        bus.stop()
+        return [stations, values]
+
+    _, inner = simulated_line(rig)
+    traced = TracingTransport(inner, tmp_path / "trace.jsonl")
+    first = converse(traced)
+    traced.close()
+    lines = (tmp_path / "trace.jsonl").read_text().splitlines(keepends=True)
+    played = RecordedTransport(lines, virtual_clock())
+    assert converse(played) == first
+    assert played.over
+    other = RecordedTransport(lines, virtual_clock())
+    with pytest.raises(DataError, match="is sent where the trace has"):
+        other.write(b"S99;")

@@ -1,0 +1,76 @@
+"""How a recording ended, told to people and to machines."""
+
+from typing import Any
+
+from cdpr8.terminal import say, say_table
+from rig.recorder import Recording
+
+
+def summary(recording: Recording) -> dict[str, Any]:
+    """The outcome for machines."""
+    stop = recording.stop
+    return {
+        "run": str(recording.folder),
+        "simulated": recording.start.simulated,
+        "seed": recording.start.seed,
+        "reason": stop.reason,
+        "duration_s": stop.t_s,
+        "samples": stop.samples,
+        "rate_per_s": {cable: round(recording.rate_per_s(cable), 2) for cable in stop.samples},
+        "frames": stop.frames,
+        "lost": stop.lost,
+        "fault": recording.fault.sentence() if recording.fault else None,
+        "next": _next_commands(recording),
+    }
+
+
+def show(recording: Recording) -> None:
+    """The outcome for people."""
+    from rich.table import Table
+
+    start, stop = recording.start, recording.stop
+    kind = "simulated " if start.simulated else ""
+    say(f"{kind}run {recording.folder}: {stop.t_s:.1f} s, ended by {_REASONS[stop.reason]}")
+    table = Table()
+    for heading in ("cable", "samples", "rate 1/s"):
+        table.add_column(heading, justify="right")
+    for cable, count in stop.samples.items():
+        table.add_row(str(cable), str(count), f"{recording.rate_per_s(cable):.1f}")
+    say_table(table)
+    camera = start.camera
+    say(f"frames: {stop.frames}" + (f" at {camera.fps:g}/s" if camera else " (no camera)"))
+    lost = (f"{_LOST.get(what, what)} {count}" for what, count in stop.lost.items())
+    say("lost:   " + (", ".join(lost) or "nothing"))
+    for line in _next_commands(recording):
+        say(f"next:   {line}")
+
+
+def _next_commands(recording: Recording) -> list[str]:
+    import shlex
+
+    run = shlex.quote(str(recording.folder))
+    return [f"rig verify {run}", f"vision track {run}", f"analysis compare {run}"]
+
+
+_REASONS = {
+    "duration": "the end of its duration",
+    "interrupted": "the user",
+    "stopped_at_once": "the user, at once",
+    "device": "a device fault",
+    "disk_full": "the disk",
+}
+
+_LOST = {
+    "bad_frame": "bad values",
+    "no_answer": "requests without answer",
+    "node_lost": "amplifiers gone silent",
+    "frame_dropped": "frames dropped",
+    "frame_repeated": "frames repeated",
+    "camera_lost": "camera gone",
+    "flagged": "samples flagged",
+    "unconfirmed": "jumps not confirmed",
+    "line_lost": "times the line was gone",
+    "missing": "values missing in streams",
+    "restart": "streams started anew",
+    "pause": "times the computer stood still",
+}

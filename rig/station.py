@@ -1,0 +1,109 @@
+"""One amplifier as it stands, and one value of it."""
+
+from dataclasses import dataclass
+
+from cdpr8.errors import DeviceError
+from cdpr8.rigfile.schema import Amplifier, Rig
+from rig.amplifier import message
+from rig.amplifier.frame import FrameFormat, Reading
+from rig.amplifier.profile import Identity, Profile, profile_of
+from rig.amplifier.scaling import Scaling
+
+
+@dataclass(frozen=True)
+class Station:
+    """One amplifier as it stands on the bus, configured and measuring.
+
+    Attributes
+    ----------
+    cable
+        1 to 8.
+    address
+        Its bus address.
+    identity, profile
+        Who it said it is, and the dialect that follows.
+    settings
+        Command -> answer, read back.
+    format
+        Of its values, probed.
+    scaling
+        From digits to newtons.
+    period_s
+        Between two of its values: the newest is between 0 and this old.
+    """
+
+    cable: int
+    address: int
+    identity: Identity
+    profile: Profile
+    settings: dict[str, str]
+    format: FrameFormat
+    scaling: Scaling
+    period_s: float
+
+    @property
+    def limit_digits(self) -> float:
+        """Digits at which the input leaves the electronics' range: overload without a status."""
+        return self.profile.overflow_mv_per_v * self.scaling.digits_per_mv_per_v
+
+    @property
+    def request(self) -> bytes:
+        """What asks for its newest value in bus mode."""
+        return message.select(self.address)
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """One value as it came off the bus; times on the transport's clock, in s.
+
+    Attributes
+    ----------
+    reading
+        Digits and status.
+    request_s
+        Just before it was asked for.
+    received_s
+        When its last byte had come.
+    sampled_s
+        Estimated sampling instant: the start of the answer less the mean age of a newest value.
+        Its standard uncertainty is the period over the square root of 12 (section 9).
+    """
+
+    reading: Reading
+    request_s: float
+    received_s: float
+    sampled_s: float
+
+
+def check_identity(
+    rig: Rig, cable: int, amplifier: Amplifier, identity: Identity, line: str
+) -> None:
+    """Hold who answered against the rig file.
+
+    Raises
+    ------
+    DeviceError
+        It is another amplifier, or of a dialect that lacks what the rig file asks for.
+    """
+    where = f"cable {cable}, amplifier {amplifier.address:02d} on {line}"
+    expected = amplifier.serial_number
+    if expected and identity.serial_number != expected:
+        raise DeviceError(
+            f"its serial number is {identity.serial_number!r}",
+            allowed=f"{expected!r}, as the rig file says",
+            where=where,
+            remedy="swap the addresses back, or correct serial_number and the certificate's "
+            "sensitivity of this cable in the rig file",
+        )
+    profile = profile_of(identity)
+    bus = rig.bus
+    for key, value, count in (
+        ("filter", bus.filter, len(profile.cut_offs_hz)),
+        ("output_rate", bus.output_rate, len(profile.rates_per_s)),
+    ):
+        if value >= count:
+            raise DeviceError(
+                f"[bus] {key} = {value} is none of the {profile.name} dialect's",
+                allowed=f"0 to {count - 1}",
+                where=where,
+            )

@@ -1,0 +1,236 @@
+"""One amplifier on a port of its own: set it up, start it, tell what came."""
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+
+from cdpr8.errors import DeviceError
+from cdpr8.rigfile.schema import Amplifier, Rig
+from rig.amplifier import message
+from rig.amplifier.dialogue import Dialogue
+from rig.amplifier.frame import (
+    BUS_MODE,
+    WITHOUT_CRLF,
+    BadFrameError,
+    Check,
+    FrameFormat,
+)
+from rig.amplifier.node import NodeClient, Settings
+from rig.amplifier.profile import profile_of
+from rig.amplifier.scaling import Scaling
+from rig.assignment import amplifiers
+from rig.confirmation import JUMP_OF_NOMINAL
+from rig.station import Station, Value, check_identity
+from rig.streaming.lock import Framed, FrameLock
+from rig.streaming.node_clock import NodeClock
+from rig.transport import Transport
+
+SILENCE_S = 0.05
+"""Silence after ``STP;`` that ends a stream for certain: the next byte is a first one."""
+
+PROBED = 16
+"""Values that must all fit one format."""
+
+LONGEST_GAP_S = 1.0
+"""A longer gap starts the node's clock anew."""
+
+JUST = 0.05
+"""Of a period: how much late a value may be and still count as on time."""
+
+START = message.command("MSV?", 0)
+STOP = message.END + message.command("STP")
+
+
+class StreamPort:
+    """One amplifier that sends its values unasked.
+
+    Parameters
+    ----------
+    transport
+        Its line.
+    rig
+        The machine.
+    cable
+        1 to 8.
+    zero_mv_per_v
+        Host-side zero of its cell.
+    """
+
+    def __init__(
+        self, transport: Transport, rig: Rig, cable: int, zero_mv_per_v: float = 0.0
+    ) -> None:
+        self.transport = transport
+        self._rig = rig
+        self._cable = cable
+        self._amplifier: Amplifier = amplifiers(rig)[cable]
+        self._dialogue = Dialogue(transport)
+        base = rig.bus.output_format % BUS_MODE
+        self._settings = Settings(
+            cof=base + (rig.bus.output_format & WITHOUT_CRLF),
+            icr=rig.bus.output_rate,
+            asf=rig.bus.filter,
+            csm=1,
+        )
+        self.station = self._set_up(zero_mv_per_v)
+
+    def start(self) -> None:
+        """Start the stream from silence."""
+        self.stop()
+        station = self.station
+        jump = JUMP_OF_NOMINAL * abs(
+            station.scaling.digits(station.scaling.nominal_force_n) - station.scaling.digits(0.0)
+        )
+        self._lock = FrameLock(station.format, None if station.format.crlf else jump)
+        self._clock = NodeClock(station.period_s)
+        self._number = -1
+        self._received = 0
+        self.heard_s = self.transport.clock.monotonic_s()
+        self._dialogue.tell(START)
+
+    def stop(self) -> None:
+        """End the stream and wait for silence."""
+        self._dialogue.tell(STOP)
+        self.transport.drain(SILENCE_S)
+
+    def resume(self) -> bool:
+        """Set up again after silence or a lost line; False where it is not what it was."""
+        self.stop()
+        node = NodeClient(self._dialogue, self.station.address)
+        try:
+            if node.identify(tries=1) != self.station.identity:
+                return False
+            if node.configure(self._settings) != self.station.settings:
+                return False
+        except DeviceError:
+            return False
+        self.start()
+        return True
+
+    @property
+    def failed(self) -> bool:
+        """Whether the alignment is unknown and the stream must be started anew."""
+        return self._lock.failed
+
+    def poll(self) -> tuple[list[Value], list[BadFrameError], int]:
+        """Values that have come, bytes that are none, and how many values are missing."""
+        data = self.transport.discard()
+        if not data:
+            return [], [], 0
+        now_s = self.transport.clock.monotonic_s()
+        self.heard_s = now_s
+        self._received += len(data)
+        framed, faults = self._lock.feed(data)
+        char_s = self.transport.line.char_s
+        arrived = [now_s - (self._received - each.end) * char_s for each in framed]
+        missing = 0
+        values = []
+        for place, (each, arrived_s) in enumerate(zip(framed, arrived, strict=True)):
+            if not each.follows and self._clock.known:
+                missing += self._skip(framed, arrived, place)
+            self._number += 1
+            self._clock.add(self._number, arrived_s)
+            values.append((each, self._number, arrived_s))
+        return [self._value(*value) for value in values], faults, missing
+
+    def _skip(self, framed: Sequence[Framed], arrived: Sequence[float], place: int) -> int:
+        """Number the first value after a gap by the node's clock; returns how many are missing."""
+        steps = []
+        for further, (each, arrived_s) in enumerate(
+            zip(framed[place:], arrived[place:], strict=True)
+        ):
+            if further and not each.follows:
+                break
+            late_s = arrived_s - self._clock.arrival_s(self._number)
+            steps.append(late_s / self._clock.period_s - further)
+        missing = max(0, math.floor(min(steps) + JUST) - 1)
+        if missing * self._clock.period_s > LONGEST_GAP_S:
+            self._clock = NodeClock(self.station.period_s)
+            self._number = -1
+        else:
+            self._number += missing
+        return missing
+
+    def _value(self, framed: Framed, number: int, arrived_s: float) -> Value:
+        # A value leaves as soon as it is ready: it was sampled when its first bit left.
+        line_s = self.station.format.length * self.transport.line.char_s
+        return Value(framed.reading, math.nan, arrived_s, self._clock.arrival_s(number) - line_s)
+
+    def _set_up(self, zero_mv_per_v: float) -> Station:
+        self.stop()
+        node = NodeClient(self._dialogue, self._amplifier.address)
+        identity = node.identify()
+        check_identity(self._rig, self._cable, self._amplifier, identity, self.transport.name)
+        profile = profile_of(identity)
+        settings = node.configure(self._settings)
+        period_s = profile.period_s(self._settings.icr)
+        format_ = self._probe(period_s)
+        return Station(
+            cable=self._cable,
+            address=self._amplifier.address,
+            identity=identity,
+            profile=profile,
+            settings=settings,
+            format=format_,
+            scaling=Scaling.of(self._amplifier, format_, zero_mv_per_v),
+            period_s=period_s,
+        )
+
+    def _probe(self, period_s: float) -> FrameFormat:
+        """With CR LF or without: asked of the stream itself (section 5, "ambiguities")."""
+        formats = [
+            FrameFormat.of_output_format(self._settings.cof, 1, crlf) for crlf in (True, False)
+        ]
+        if formats[0].check is not Check.CHECKSUM:
+            raise DeviceError(
+                f"[bus] output_format = {self._rig.bus.output_format} carries no checksum",
+                allowed="24, 28 (and these + 32) where streaming = true",
+                where=self._rig.name,
+            )
+        clock, line = self.transport.clock, self.transport.line
+        self._dialogue.tell(START)
+        count = PROBED * formats[0].length
+        wait_s = count * line.char_s + 2 * PROBED * period_s
+        raw = self.transport.read(count, clock.monotonic_s() + wait_s).data
+        self.stop()
+        fitting = [each for each in formats if _all_fit(each, raw)]
+        if len(fitting) != 1:
+            raise DeviceError(
+                f"values fit {len(fitting)} formats: {raw[:12].hex(' ').upper() or 'nothing came'}",
+                allowed="values of 4 bytes with a checksum, all with CR LF or all without",
+                where=self.transport.name,
+                remedy="check the wiring, and that the line is fast enough for the output rate",
+            )
+        return fitting[0]
+
+
+def _all_fit(format_: FrameFormat, raw: bytes) -> bool:
+    length = format_.length
+    whole = len(raw) // length
+    if whole < PROBED // 2:
+        return False
+    for at in range(0, whole * length, length):
+        try:
+            format_.decode(raw[at : at + length])
+        except BadFrameError:
+            return False
+    return True
+
+
+def open_ports(
+    transports: Sequence[Transport], rig: Rig, zeros: dict[int, float] | None = None
+) -> tuple[StreamPort, ...]:
+    """Set up the amplifiers of all cables, in their order, each on its own line."""
+    found = tuple(
+        StreamPort(transport, rig, cable, (zeros or {}).get(cable, 0.0))
+        for cable, transport in enumerate(transports, start=1)
+    )
+    for port in found:
+        port.start()
+    return found
+
+
+def close_ports(ports: Sequence[StreamPort]) -> None:
+    """End all streams."""
+    for port in ports:
+        with suppress(DeviceError):
+            port.stop()

@@ -1,0 +1,191 @@
+"""The health of a recorded run: rates, gaps, skew, jitter, overloads, stuck values, clocks."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cdpr8 import CABLES
+from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+GAP_INTERVALS = 5.0
+"""An interval longer than this many median ones is a gap."""
+
+MOST_LOST = 0.01
+MOST_DRIFT_PPM = 200.0
+CLOCK_STEP_S = 0.1
+
+
+class Verdict(StrEnum):
+    """What a check found."""
+
+    OK = "ok"
+    WARN = "warn"
+    FAIL = "FAIL"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line of the report.
+
+    Attributes
+    ----------
+    verdict, what, words
+        How it stands, what was looked at, and the figures.
+    """
+
+    verdict: Verdict
+    what: str
+    words: str
+
+
+def verify(run: Run) -> list[Finding]:
+    """Look at everything that can be told from the run folder."""
+    return [
+        *_ending(run),
+        *_cables(run),
+        *_skew(run),
+        *_losses(run),
+        *_overloads(run),
+        *_frames(run),
+        *_clocks(run),
+    ]
+
+
+def _ending(run: Run) -> Iterator[Finding]:
+    if run.stop is None:
+        yield Finding(Verdict.WARN, "ending", "no stop record: interrupted; what came is there")
+    elif run.stop.reason in ("device", "disk_full"):
+        yield Finding(Verdict.FAIL, "ending", f"ended by a fault: {run.stop.reason}")
+    else:
+        yield Finding(Verdict.OK, "ending", f"{run.stop.t_s:.1f} s, {run.stop.reason}")
+    for words in run.notes:
+        if "stop.json" not in words:
+            yield Finding(Verdict.WARN, "files", words)
+
+
+def _cables(run: Run) -> Iterator[Finding]:
+    for cable in range(1, CABLES + 1):
+        times = run.cable_tension(cable)["t_s"].to_numpy(dtype=float)
+        if len(times) < 3:
+            yield Finding(Verdict.FAIL, f"cable {cable}", f"{len(times)} good values")
+            continue
+        steps = np.diff(times)
+        usual = float(np.median(steps))
+        gaps = steps[steps > GAP_INTERVALS * usual]
+        stuck = _flagged(run, cable, TensionStatus.STALE)
+        words = (
+            f"{len(times) / (times[-1] - times[0]):.1f}/s, usual interval {1e3 * usual:.2f} ms, "
+            f"jitter {1e3 * float(np.std(steps[steps <= GAP_INTERVALS * usual])):.2f} ms"
+        )
+        if len(gaps):
+            words += f", {len(gaps)} gaps, the longest {gaps.max():.3f} s"
+        if stuck:
+            words += f", {stuck} stuck values"
+        missing = float(gaps.sum()) / float(times[-1] - times[0])
+        verdict = Verdict.OK
+        if len(gaps) or stuck:
+            verdict = Verdict.FAIL if missing > MOST_LOST or stuck else Verdict.WARN
+        yield Finding(verdict, f"cable {cable}", words)
+
+
+def _skew(run: Run) -> Iterator[Finding]:
+    first = run.cable_tension(1)["t_s"].to_numpy(dtype=float)
+    if len(first) < 3:
+        return
+    spread = 0.0
+    for cable in range(2, CABLES + 1):
+        times = run.cable_tension(cable)["t_s"].to_numpy(dtype=float)
+        if len(times) < 3:
+            continue
+        after = np.clip(np.searchsorted(times, first), 1, len(times) - 1)
+        nearest = np.minimum(np.abs(times[after] - first), np.abs(times[after - 1] - first))
+        spread = max(spread, float(np.median(nearest)))
+    words = f"values of one sweep lie up to {1e3 * spread:.2f} ms apart; each has its own time"
+    yield Finding(Verdict.OK, "skew", words)
+
+
+def _losses(run: Run) -> Iterator[Finding]:
+    counts = Counter(run.events["kind"].astype(str))
+    lost = dict(run.stop.lost) if run.stop is not None else {}
+    for kind in (EventKind.BAD_FRAME, EventKind.NODE_LOST, EventKind.LINE_LOST, EventKind.PAUSE):
+        if kind.value not in lost and counts[kind.value]:
+            lost[kind.value] = counts[kind.value]
+    total = sum(count for what, count in lost.items() if what != "flagged")
+    share = total / max(1, len(run.tension))
+    words = ", ".join(f"{what} {count}" for what, count in lost.items()) or "nothing"
+    verdict = Verdict.OK if not lost else Verdict.FAIL if share > MOST_LOST else Verdict.WARN
+    yield Finding(verdict, "lost", words)
+
+
+def _overloads(run: Run) -> Iterator[Finding]:
+    over = [
+        cable
+        for cable in range(1, CABLES + 1)
+        if _flagged(run, cable, TensionStatus.HOST_OVERLOAD | TensionStatus.ADC_OVERFLOW)
+    ]
+    if over:
+        words = f"cables {', '.join(map(str, over))}: check the cells' zeros before the next run"
+        yield Finding(Verdict.FAIL, "overload", words)
+    else:
+        yield Finding(Verdict.OK, "overload", "none")
+
+
+def _frames(run: Run) -> Iterator[Finding]:
+    if run.start.camera is None:
+        return
+    frames = run.frames
+    if len(frames) < 2:
+        yield Finding(Verdict.FAIL, "video", f"{len(frames)} frames")
+        return
+    steps = np.diff(frames["t_s"].to_numpy(dtype=float))
+    flags = frames["flags"].to_numpy(dtype=int)
+    dropped = int((flags & FrameFlag.DROPPED_BEFORE > 0).sum())
+    repeated = int((flags & FrameFlag.REPEATED > 0).sum())
+    words = (
+        f"{len(frames)} frames, {1.0 / float(np.median(steps)):.2f}/s, "
+        f"jitter {1e3 * float(np.std(steps)):.2f} ms"
+    )
+    if dropped or repeated:
+        words += f", {dropped} after a dropped one, {repeated} repeated"
+    yield Finding(Verdict.WARN if dropped or repeated else Verdict.OK, "video", words)
+
+
+def _clocks(run: Run) -> Iterator[Finding]:
+    anchors = [(run.start.clock_anchor.t_s, run.start.clock_anchor.wall.timestamp())]
+    anchors += list(_anchors(run.events))
+    if run.stop is not None:
+        anchors.append((run.stop.clock_anchor.t_s, run.stop.clock_anchor.wall.timestamp()))
+    run_s, wall_s = np.array(anchors).T
+    off_s = (wall_s - wall_s[0]) - (run_s - run_s[0])
+    steps = np.abs(np.diff(off_s))
+    if len(steps) and steps.max() > CLOCK_STEP_S:
+        words = f"the wall clock was stepped by {steps.max():.2f} s; times of the run are not moved"
+        yield Finding(Verdict.WARN, "clock", words)
+    elif run_s[-1] - run_s[0] >= 60.0:
+        ppm = 1e6 * float(np.polyfit(run_s, off_s, 1)[0])
+        verdict = Verdict.OK if abs(ppm) < MOST_DRIFT_PPM else Verdict.WARN
+        yield Finding(verdict, "clock", f"wall against run {ppm:+.1f} ppm")
+    else:
+        yield Finding(Verdict.OK, "clock", "no step (a run of 60 s also tells the drift)")
+
+
+def _anchors(events: "pd.DataFrame") -> Iterator[tuple[float, float]]:
+    from datetime import datetime
+
+    if not len(events):
+        return
+    rows = events[events["kind"] == EventKind.CLOCK_ANCHOR.value]
+    for t_s, words in zip(rows["t_s"], rows["detail"], strict=True):
+        yield float(t_s), datetime.fromisoformat(str(words)).timestamp()
+
+
+def _flagged(run: Run, cable: int, bits: TensionStatus) -> int:
+    rows = run.tension["cable"] == cable
+    return int(((run.tension["status"][rows].to_numpy(dtype=int) & int(bits)) != 0).sum())

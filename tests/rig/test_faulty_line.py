@@ -1,0 +1,155 @@
+"""Hours of a bad line on a virtual clock, every value held against the amplifier's own."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from rig_stand_ins import WavePlatform, simulated_line, with_bus
+
+from cdpr8.rigfile import Rig
+from cdpr8.runfolder import BAD_TENSION, EventKind
+from rig.bus import Bus
+from rig.intake import Intake
+from rig.scribe import Sample
+from rig.simulated.bus import SimulatedBus
+from rig.simulated.faults import LineFaults
+from rig.streams import BusStream, Span
+from rig.tally import Tally
+
+FAULTS = ("flip", "drop", "insert")
+PER_BYTE = 1e-4
+
+
+@dataclass
+class Witness:
+    """A scribe that knows what each amplifier really measured."""
+
+    bus: SimulatedBus
+    origin_s: float = 0.0
+    wrong: list[Sample] = field(default_factory=list)
+    events: Counter[str] = field(default_factory=Counter)
+    good: int = 0
+    written: int = 0
+    failure: None = None
+
+    def sample(self, sample: Sample) -> None:
+        self.written += 1
+        if sample.status & BAD_TENSION:
+            return
+        self.good += 1
+        node = self.bus.nodes[sample.cable - 1]
+        first = node.signal.number_at(self.origin_s + sample.request_s, 0)
+        last = node.signal.number_at(self.origin_s + sample.received_s, 0)
+        true = (node.signal.value(number, 0, 0)[0] for number in range(first, last + 1))
+        if sample.digits not in true:
+            self.wrong.append(sample)
+
+    def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
+        self.events[kind.value] += 1
+
+    def close(self) -> None: ...
+
+
+def hours_of_faults(
+    rig: Rig, hours: float, kinds: tuple[str, ...], per_byte: float, seed: int = 1
+) -> tuple[Witness, Tally, LineFaults, int]:
+    """A faulty bus for so long; also returns how many values were asked for."""
+    faults = LineFaults(np.random.default_rng(seed))
+    line, transport = simulated_line(rig, WavePlatform(1.0, 0.3), faults=faults, seed=seed)
+    bus = Bus(transport, rig)
+    stations = bus.start()
+    for kind in kinds:
+        setattr(faults, kind, per_byte / len(kinds))
+    origin_s = transport.clock.monotonic_s()
+    witness, tally = Witness(line, origin_s), Tally()
+    span = Span(origin_s, origin_s + 3600.0 * hours)
+    asked = 0
+    take = bus.take
+
+    def counted(*arguments: object) -> object:
+        nonlocal asked
+        asked += 1
+        return take(*arguments)
+
+    bus.take = counted
+    stream = BusStream(bus, stations, Intake(witness, tally, origin_s), span)
+    while stream.step():
+        pass
+    return witness, tally, faults, asked
+
+
+def held(witness: Witness, tally: Tally, asked: int) -> None:
+    """No wrong value is good, and every value asked for was written or counted as lost."""
+    assert witness.wrong == []
+    lost = tally.lost.get("bad_frame", 0) + tally.lost.get("no_answer", 0)
+    assert witness.written + lost == asked
+    assert witness.good == witness.written - tally.lost.get("flagged", 0)
+    assert witness.events["bad_frame"] == tally.lost.get("bad_frame", 0)
+
+
+@pytest.mark.parametrize("parity", ["even", "none"])
+def test_minutes_of_a_bad_line_record_nothing_wrong(rig: Rig, parity: str) -> None:
+    witness, tally, faults, asked = hours_of_faults(
+        with_bus(rig, parity=parity), 0.8 / 60, (*FAULTS, "twist"), 30 * PER_BYTE
+    )
+    assert sum(faults.count.values()) > 500
+    held(witness, tally, asked)
+    assert witness.good > 0.5 * asked
+
+
+@pytest.mark.slow
+def test_a_day_of_a_bad_line_records_nothing_wrong(rig: Rig) -> None:
+    # 9600 baud: 24 h are 7.5 million values, each held against the amplifier's own.
+    witness, tally, faults, asked = hours_of_faults(
+        with_bus(rig, baud=9600), 24.0, FAULTS, PER_BYTE
+    )
+    assert sum(faults.count.values()) > 5000
+    held(witness, tally, asked)
+    assert witness.good > 0.995 * asked
+
+
+def test_another_amplifiers_value_is_not_believed(rig: Rig) -> None:
+    # Without parity one turned bit makes S01; into S03;, and node 3 answers in good order.
+    line, transport = simulated_line(with_bus(rig, parity="none"))
+    bus = Bus(transport, with_bus(rig, parity="none"))
+    stations = bus.start()
+    origin_s = transport.clock.monotonic_s()
+    witness, tally = Witness(line, origin_s), Tally()
+    hear, wrong = line.hear, []
+
+    def mishear(data: bytes, start_s: float) -> None:
+        if data == b"S01;" and len(wrong) < 20 and start_s > origin_s + 0.1 * len(wrong):
+            wrong.append(start_s)
+            data = b"S03;"
+        hear(data, start_s)
+
+    line.hear = mishear
+    span = Span(origin_s, origin_s + 3.0)
+    stream = BusStream(bus, stations, Intake(witness, tally, origin_s), span)
+    while stream.step():
+        pass
+    assert len(wrong) == 20
+    assert witness.wrong == []
+    assert 20 <= tally.lost["unconfirmed"] <= 21  # and one that waited when the run ended
+
+
+def test_a_real_jump_is_confirmed_and_kept(rig: Rig) -> None:
+    class Snap(WavePlatform):
+        def tension_at(self, cable: int, t_s: np.ndarray) -> np.ndarray:
+            return np.asarray(10.0 + 15.0 * (t_s > 1.0))
+
+    line, transport = simulated_line(rig, Snap())
+    bus = Bus(transport, rig)
+    stations = bus.start()
+    origin_s = transport.clock.monotonic_s()
+    for node in line.nodes:
+        node.signal.begin(origin_s)
+    witness, tally = Witness(line, origin_s), Tally()
+    stream = BusStream(
+        bus, stations, Intake(witness, tally, origin_s), Span(origin_s, origin_s + 2.0)
+    )
+    while stream.step():
+        pass
+    assert witness.good == witness.written > 2.0 * 8 * 0.9 * 131
+    assert tally.lost == {}

@@ -1,0 +1,249 @@
+"""What goes wrong around the line: unplugged, echoing, paused, the wall clock stepped."""
+
+import os
+import threading
+import time
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rig_stand_ins import WavePlatform, motion, record_virtually, rig_text, simulated_line, with_bus
+
+from cdpr8.clock import RealClock
+from cdpr8.errors import DeviceError
+from cdpr8.rigfile import Rig
+from cdpr8.runfolder import load_run
+from rig.alarm import OverloadAlarm
+from rig.assignment import line_settings
+from rig.bus import Bus
+from rig.machine import Machine
+from rig.recorder import record
+from rig.simulated.bus import SimulatedBus
+from rig.simulated.pseudo_terminal import PseudoTerminal
+from rig.simulated.rig import assemble, simulated_nodes
+from rig.transport import TwoWire, open_serial_port
+
+needs_terminals = pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
+
+
+@needs_terminals
+def test_a_replugged_adapter_is_back_within_two_seconds(rig: Rig, tmp_path: Path) -> None:
+    clock = RealClock()
+    nodes = simulated_nodes(rig, WavePlatform(), clock.monotonic_s(), 1)
+    bus = SimulatedBus(nodes, line_settings(rig))
+    terminal = PseudoTerminal(bus, clock, tmp_path / "port")
+    transport = open_serial_port(terminal.path, bus.line, clock)
+    replugged: list[float] = []
+
+    def begin(origin_s: float) -> None:
+        for node in nodes:
+            node.signal.begin(origin_s)
+
+        def pull() -> None:
+            clock.sleep_until(origin_s + 0.7)
+            terminal.close()
+            clock.sleep_until(origin_s + 1.4)
+            terminal.plug()
+            replugged.append(clock.monotonic_s() - origin_s)
+
+        threading.Thread(target=pull, daemon=True).start()
+
+    machine = Machine(
+        transport=transport,
+        camera=None,
+        simulated=True,
+        motion_known=True,
+        begin=begin,
+        close=transport.close,
+    )
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(3.5), clock=clock, machine=machine
+    )
+    terminal.close()
+    assert recording.fault is None
+    run = load_run(tmp_path / "run")
+    lost = run.events[run.events["kind"] == "line_lost"]["t_s"]
+    back = run.events[run.events["kind"] == "line_back"]["t_s"]
+    assert len(lost) == len(back) == 1
+    assert 0.7 <= lost.iloc[0] < 1.2
+    assert back.iloc[0] - replugged[0] < 2.0
+    for cable in range(1, 9):
+        rows = run.cable_tension(cable)
+        assert (np.abs(rows["tension_n"] - 5.0 - 2.0 * cable) < 0.04).all()
+        assert rows["t_s"].max() > 3.2
+    assert recording.stop.lost["line_lost"] == 1
+
+
+def test_the_echo_of_a_two_wire_line_is_swallowed(rig: Rig, tmp_path: Path) -> None:
+    record_virtually(with_bus(rig, echo=True), tmp_path / "run", 2.0, camera=False)
+    run = load_run(tmp_path / "run")
+    assert run.stop.lost == {}
+    for cable in range(1, 9):
+        rows = run.cable_tension(cable)
+        assert len(rows) > 100
+        assert (np.abs(rows["tension_n"] - 5.0 - 2.0 * cable) < 0.04).all()
+
+
+def test_an_echo_that_is_not_what_was_sent_damages_the_answer(rig: Rig) -> None:
+    _, inner = simulated_line(rig)
+    line = TwoWire(inner)
+    bus = inner._far_end
+    bus._echo = True
+    bus_send = bus._send
+    bus._send = lambda data, start_s, damaged=False: bus_send(
+        data.replace(b"IDN", b"IDM"), start_s, damaged
+    )
+    line.write(b";S01;IDN?;")
+    assert line.read(33, 0.1).damaged
+
+
+def test_a_pause_of_two_seconds_is_said_and_no_time_is_invented(rig: Rig, tmp_path: Path) -> None:
+    clock = RealClock()
+    machine = assemble(rig, WavePlatform(1.0, 1.0), None, clock, seed=1)
+    write, paused = machine.transport.write, []
+
+    def stand_still(data: bytes) -> None:
+        write(data)
+        if not paused and data == b"S04;" and clock.monotonic_s() > origin[0] + 0.5:
+            paused.append(True)
+            time.sleep(2.0)
+
+    origin: list[float] = []
+    begin = machine.begin
+
+    def note_origin(origin_s: float) -> None:
+        origin.append(origin_s)
+        begin(origin_s)
+        machine.transport.write = stand_still
+
+    machine.begin = note_origin
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(3.2), clock=clock, machine=machine
+    )
+    run = load_run(tmp_path / "run")
+    assert recording.stop.lost["pause"] == 1
+    assert "pause" in set(run.events["kind"])
+    for cable in range(1, 9):
+        rows = run.cable_tension(cable)
+        true = WavePlatform(1.0, 1.0).tension_at(cable, rows["t_s"].to_numpy())
+        assert np.abs(rows["tension_n"] - true).max() < 0.3  # 20 ms of 6 N/s, and noise
+
+
+class SteppedClock(RealClock):
+    """The wall clock is put forward by an hour."""
+
+    def __init__(self) -> None:
+        self.ahead = timedelta()
+
+    def wall(self) -> datetime:
+        return datetime.now(UTC) + self.ahead
+
+
+def test_a_stepped_wall_clock_is_noted_and_moves_no_sample(rig: Rig, tmp_path: Path) -> None:
+    clock = SteppedClock()
+    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+
+    def watch(_: object, now_s: float) -> None:
+        if now_s > 0.4:
+            clock.ahead = timedelta(hours=1)
+
+    record(
+        rig,
+        rig_text(),
+        tmp_path / "run",
+        excitation=motion(1.2),
+        clock=clock,
+        machine=machine,
+        watch=watch,
+    )
+    run = load_run(tmp_path / "run")
+    steps = run.events[run.events["kind"] == "clock_step"]
+    assert len(steps) == 1
+    assert "+3600." in steps["detail"].iloc[0]
+    assert np.diff(run.cable_tension(1)["t_s"]).max() < 0.3
+    assert run.tension["t_s"].max() < 1.3
+
+
+def test_a_display_that_stalls_does_not_touch_the_data(rig: Rig, tmp_path: Path) -> None:
+    clock = RealClock()
+    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+    recording = record(
+        rig,
+        rig_text(),
+        tmp_path / "run",
+        excitation=motion(1.0),
+        clock=clock,
+        machine=machine,
+        watch=lambda *_: time.sleep(1.5),
+    )
+    assert recording.stop.lost.get("pause", 0) == 0
+    assert min(recording.stop.samples.values()) > 40
+
+
+def test_two_amplifiers_at_one_address_are_refused(rig: Rig) -> None:
+    bus, transport = simulated_line(rig)
+    bus.nodes[3].settings["ADR"] = 2
+    with pytest.raises(DeviceError):
+        Bus(transport, rig).start()
+
+
+def test_a_wrong_baud_rate_is_told(rig: Rig) -> None:
+    bus, transport = simulated_line(rig)
+    for node in bus.nodes:
+        node.settings["BAUD"] = 38400
+    with pytest.raises(DeviceError, match="no amplifier answers at 115200"):
+        Bus(transport, rig).start()
+
+
+def test_a_garbage_burst_is_over_within_half_a_second(rig: Rig, tmp_path: Path) -> None:
+    from rig.transport import Chunk
+
+    rig_line, transport = simulated_line(rig)
+    bus = Bus(transport, rig)
+    stations = bus.start()
+    clock = transport.clock
+    noise = np.random.default_rng(4).bytes(300)
+    rig_line._outgoing.append(Chunk(noise, clock.now_s, rig_line.line.char_s))
+    began_s = clock.now_s
+    failures = 0
+    while True:
+        try:
+            value = bus.take(stations[0])
+        except ValueError:
+            failures += 1
+            continue
+        break
+    assert failures >= 1
+    assert clock.now_s - began_s < 0.5
+    assert stations[0].scaling.tension_n(value.reading.digits) == pytest.approx(7.0, abs=0.04)
+
+
+def test_an_alarm_rings_speaks_and_runs_a_command(tmp_path: Path) -> None:
+    told: list[str] = []
+    alarm = OverloadAlarm(told.append, f"echo $CDPR8_CABLE > {tmp_path / 'out'}")
+    alarm(3, "61.00 N: above 120 % of the cell's 50 N")
+    deadline = time.monotonic() + 5.0
+    while not (tmp_path / "out").exists() or not (tmp_path / "out").read_text():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    assert told == ["\aOVERLOAD cable 3: 61.00 N: above 120 % of the cell's 50 N"]
+    assert (tmp_path / "out").read_text() == "3\n"
+
+
+def test_an_overload_raises_the_alarm_once(rig: Rig, tmp_path: Path) -> None:
+    from rig_stand_ins import virtual_clock
+
+    raised: list[int] = []
+    clock = virtual_clock()
+    machine = assemble(rig, WavePlatform(45.0, 0.5), None, clock, seed=1)
+    record(
+        rig,
+        rig_text(),
+        tmp_path / "run",
+        excitation=motion(1.5),
+        clock=clock,
+        machine=machine,
+        alarm=lambda cable, _: raised.append(cable),
+    )
+    assert raised.count(8) == 1

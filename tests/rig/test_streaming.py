@@ -1,0 +1,179 @@
+"""One port per amplifier: alignment, numbering, times and losses of values that come unasked."""
+
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rig_stand_ins import (
+    WavePlatform,
+    motion,
+    record_virtually,
+    rig_text,
+    virtual_clock,
+    with_bus,
+    without_noise,
+)
+
+from cdpr8.clock import RealClock
+from cdpr8.errors import RigFileError
+from cdpr8.rigfile import Rig
+from cdpr8.runfolder import Run, load_run
+from rig.amplifier.frame import Check, FrameFormat
+from rig.machine import open_machine
+from rig.recorder import record
+from rig.simulated.faults import LineFaults
+from rig.simulated.rig import assemble
+from rig.streaming.lock import VALUES_TO_LOCK, FrameLock
+from rig.streaming.node_clock import NodeClock
+
+CRLF = FrameFormat(4, True, Check.CHECKSUM, crlf=True)
+BARE = FrameFormat(4, True, Check.CHECKSUM, crlf=False)
+SLOPE = 2.0
+PERIOD_S = 1 / 600
+
+
+def streaming(rig: Rig) -> Rig:
+    return with_bus(rig, streaming=True, output_rate=1)
+
+
+def time_errors(run: Run, cable: int) -> np.ndarray:
+    """A ramp without noise: the value itself says when it was sampled."""
+    rows = run.cable_tension(cable)
+    rows = rows[rows["t_s"] > 0.1]
+    true_s = (rows["tension_n"] - 5.0 - 2.0 * cable) / SLOPE + 0.5 * (PERIOD_S - 1 / 1200)
+    return (rows["t_s"] - true_s).to_numpy()
+
+
+def test_eight_streams_lose_nothing_and_tell_their_times(rig: Rig, tmp_path: Path) -> None:
+    platform = WavePlatform(slope_n_per_s=SLOPE)
+    recording = record_virtually(
+        streaming(without_noise(rig)), tmp_path / "run", 4.0, platform=platform, camera=False
+    )
+    assert recording.stop.lost == {}
+    run = load_run(tmp_path / "run")
+    for cable in range(1, 9):
+        assert recording.stop.samples[cable] == pytest.approx(2400, abs=3)
+        errors_s = time_errors(run, cable)
+        assert np.sqrt(np.mean(errors_s**2)) < 0.2e-3
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
+def test_eight_streams_in_real_time_for_a_minute(rig: Rig, tmp_path: Path) -> None:
+    clock = RealClock()
+    rig = streaming(without_noise(rig))
+    machine = assemble(rig, WavePlatform(slope_n_per_s=0.2), None, clock, seed=1)
+    began = time.process_time()
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(60.0), clock=clock, machine=machine
+    )
+    assert recording.stop.lost == {}
+    assert min(recording.stop.samples.values()) >= 60 * 600 * (1 - 2e-4) - 2
+    # The simulated amplifiers run in this process too.
+    assert (time.process_time() - began) / 60.0 < 0.5
+
+
+def test_spoiled_bytes_in_a_stream_never_become_good_values(rig: Rig, tmp_path: Path) -> None:
+    faults = LineFaults(np.random.default_rng(3))
+    rig = streaming(rig)
+    clock = virtual_clock()
+    machine = assemble(rig, WavePlatform(), None, clock, seed=1, faults=faults)
+    begin = machine.begin
+
+    def spoil_from_now_on(origin_s: float) -> None:
+        faults.flip = faults.drop = faults.insert = 6e-4
+        begin(origin_s)
+
+    machine.begin = spoil_from_now_on
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(4.0), clock=clock, machine=machine
+    )
+    assert sum(faults.count.values()) > 150
+    run = load_run(tmp_path / "run")
+    for cable in range(1, 9):
+        rows = run.cable_tension(cable)
+        assert (np.abs(rows["tension_n"] - 5.0 - 2.0 * cable) < 0.04).all()
+        assert (np.diff(rows["t_s"]) > 0.5 * PERIOD_S).all()
+    missing = sum(2400 - count for count in recording.stop.samples.values())
+    assert missing == pytest.approx(recording.stop.lost["missing"], abs=0.1 * missing + 16)
+
+
+def stream_of(format_: FrameFormat, digits: list[int]) -> bytes:
+    return b"".join(format_.encode(each) for each in digits)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.lists(st.integers(-(2**22), 2**22), min_size=40, max_size=60),
+    st.integers(60, 200),
+    st.integers(1, 7),
+)
+def test_a_lost_byte_costs_its_own_value_only(digits: list[int], at: int, step: int) -> None:
+    data = stream_of(CRLF, digits)
+    data = data[:at] + data[at + 1 :]
+    lock = FrameLock(CRLF)
+    found = []
+    for start in range(0, len(data), step):
+        found += lock.feed(data[start : start + step])[0]
+    broken = at // CRLF.length
+    whole = digits[:broken] + digits[broken + 1 :]
+    values = [each.reading.digits for each in found]
+    assert values == whole[: len(values)]
+    assert len(values) >= len(whole) - VALUES_TO_LOCK - 2 or not lock.locked
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.binary(max_size=600), st.integers(1, 50))
+def test_arbitrary_bytes_are_values_or_faults_and_none_is_invented(data: bytes, step: int) -> None:
+    for format_ in (CRLF, BARE):
+        lock, values = FrameLock(format_), []
+        for start in range(0, len(data), step):
+            values += lock.feed(data[start : start + step])[0]
+        for each in values:
+            length = format_.length
+            assert format_.encode(each.reading.digits) == data[each.end - length : each.end]
+
+
+def test_a_still_signal_without_crlf_is_never_taken_for_aligned() -> None:
+    # Section 5, "Trap": shifted by one byte, 27 10 00 37 passes every checksum as 10 00 37 27.
+    rng = np.random.default_rng(1)
+    data = stream_of(BARE, [int(2_560_000 + 30 * each) for each in rng.standard_normal(300)])
+    for shift in range(4):
+        lock = FrameLock(BARE, jump_digits=25_600)
+        found = [
+            each.reading.digits
+            for start in range(shift, len(data), 7)
+            for each in lock.feed(data[start : start + 7])[0]
+        ]
+        assert all(abs(each - 2_560_000) < 1000 for each in found)
+        assert lock.locked or lock.failed
+
+
+def test_a_value_that_looks_like_crlf_does_not_lock_at_a_wrong_place() -> None:
+    data = stream_of(CRLF, [0x0D0A00 + number % 200 for number in range(60)])
+    for shift in range(6):
+        lock = FrameLock(CRLF)
+        assert lock.feed(data[shift:])[0] == []
+        assert not lock.locked
+
+
+def test_a_node_clock_follows_the_earliest_arrivals() -> None:
+    rng = np.random.default_rng(2)
+    clock, period_s = NodeClock(PERIOD_S), PERIOD_S * (1 + 80e-6)
+    errors = []
+    for number in range(36_000):
+        true_s = 5.0 + number * period_s
+        clock.add(number, true_s + rng.uniform(0.0, 0.006))
+        errors.append(clock.arrival_s(number) - true_s)
+    settled = np.array(errors[600:])
+    assert np.sqrt(np.mean(settled**2)) < 0.2e-3
+    assert 1e6 * (clock.period_s / PERIOD_S - 1) == pytest.approx(80, abs=5)
+
+
+def test_ports_must_be_named(rig: Rig) -> None:
+    with pytest.raises(RigFileError, match="cable 1 has no port"):
+        open_machine(with_bus(rig, streaming=True, port="/dev/x"), rig.excitation, RealClock())
