@@ -80,7 +80,7 @@ def import_command(
     Example: rig import --video test.avi --tension test.asc
     --map "time=Time,1=Force 1,2=Force 2" --sync 2.31=1.04 --sync 58.77=57.49
     """
-    from cdpr8.rigfile import find_rig_file, load_rig
+    from cdpr8.rigfile import files_beside, find_rig_file, load_rig
     from rig.foreign import ClockMap, ColumnMap, read_foreign_table
     from rig.import_run import import_run
 
@@ -91,10 +91,11 @@ def import_command(
     if video is not None and not taps:
         note("no --sync: the video is taken to start with the table")
     folder = Path("runs") / name
+    rig_text = path.read_text(encoding="utf-8")
     stop = import_run(
         folder,
         load_rig(path),
-        path.read_text(encoding="utf-8"),
+        rig_text,
         str(path),
         read_foreign_table(tension),
         columns,
@@ -102,6 +103,7 @@ def import_command(
         video=video,
         clock=clock,
         taps=tuple(taps),
+        beside_rig=files_beside(rig_text, path.parent),
     )
     count = sum(stop.samples.values())
     say(f"run {folder}: {stop.t_s:.1f} s, {count} values, {stop.frames} frames")

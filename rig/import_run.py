@@ -2,7 +2,7 @@
 
 import hashlib
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -37,6 +37,7 @@ def import_run(
     clock: ClockMap | None = None,
     taps: tuple[tuple[float, float], ...] = (),
     made: datetime | None = None,
+    beside_rig: Mapping[str, bytes] | None = None,
 ) -> StopRecord:
     """Write a run: tensions at the table's times, frames at theirs on the table's clock.
 
@@ -59,6 +60,8 @@ def import_run(
         Events seen in both, as (table, video): noted as such.
     made
         When it was recorded; None takes now.
+    beside_rig
+        Files that the rig file names, for the run folder: `cdpr8.rigfile.files_beside`.
     """
     clock = clock or ClockMap()
     times = table.column(columns.time, where)
@@ -81,7 +84,7 @@ def import_run(
         + f"; video: {clock.offset_s:+.6f} s, rate {clock.rate:.9f}",
         versions=versions(),
     )
-    writer = RunWriter(folder, start, rig_text)
+    writer = RunWriter(folder, start, rig_text, beside_rig)
     samples = dict.fromkeys(range(1, 9), 0)
     for row, t_s in enumerate(times):
         for cable, force in forces.items():

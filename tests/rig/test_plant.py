@@ -24,9 +24,9 @@ def rubbing(rig: Rig) -> PlatformTrajectory:
 
 def test_without_friction_it_is_the_models_machine(rig: Rig) -> None:
     own = simulate_platform(rig, MOTION, np.zeros(8))
-    model = simulate(rig, MOTION)
-    assert np.abs(own.pose - model.pose).max() < 1e-9
-    assert np.abs(own.tension_n - model.tension_n).max() < 1e-6
+    model = simulate(rig, MOTION, method="rk4")  # the same method: rounding is all that is left
+    assert np.abs(own.pose - model.pose).max() < 1e-12
+    assert np.abs(own.tension_n - model.tension_n).max() < 1e-9
 
 
 def test_friction_stands_between_the_elastic_and_the_measured_tension(
