@@ -24,6 +24,21 @@ FAST = {"reassoc", "nsz", "arcp", "contract", "afn"}
 """What the lane kernel may do to arithmetic. Not "nnan" nor "ninf": a NaN must stay one."""
 
 
+UNCOUNTED = {"_nrt": False}
+"""No counting of references to arrays: their counts, atomic, took most of the time. So compiled
+functions allocate nothing: Python gives them their room."""
+
+COUNTED = (
+    "lane_row",
+    "lane_pull",
+    "lane_rates",
+    "lane_wrench",
+    "lane_derivative",
+    "cables_elastic",
+    "vibrate",
+)
+"""Functions that use `lane_row`, and it: a part of an array that is returned has to be counted."""
+
 INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
 """Small next to their many arguments: a call would cost more than the work."""
 
@@ -142,6 +157,8 @@ def compiled(name: str) -> Any:
     options: dict[str, Any] = {"error_model": "numpy"}
     if name in LANE:
         options["fastmath"] = FAST
+    else:
+        options |= UNCOUNTED
     _compile_laws()
     folder = cache_folder()
     before = numba.config.CACHE_DIR
@@ -168,4 +185,5 @@ def _compile_laws() -> None:
                 and law.__name__ not in SCALAR + LANE
             ):
                 inline = {"forceinline": True} if law.__name__ in INLINE else {}
-                register_jitable(error_model="numpy", **fast, **inline)(law)
+                counted = {} if law.__name__ in COUNTED else UNCOUNTED
+                register_jitable(error_model="numpy", **counted, **fast, **inline)(law)

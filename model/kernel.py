@@ -317,6 +317,8 @@ def integrate(
     step_weights: Array,
     plant: Any,
     extras: Any,
+    rates: Array,
+    trial: Array,
     trajectory: Array,
 ) -> tuple[int, int]:
     """Integrate Eq. 18 by an explicit Runge-Kutta method over given steps.
@@ -347,6 +349,8 @@ def integrate(
         The method: a_ij, shape (stages, stages), and b_i, shape (m,), m <= stages.
     plant, extras
         A `Plant` and an `Extras`.
+    rates, trial
+        Room to work in, shapes (stages, s) and (s,).
     trajectory
         Filled with states, shape (rows, s).
 
@@ -356,18 +360,18 @@ def integrate(
         Points reached, and the index of the state that blew up, or -1.
     """
     stages, needed = step_weights.size, stage_weights.shape[0]
-    rates = np.empty((needed, state.size))
-    trial = np.empty(state.size)
     steps = step_s.size
     for point in range(steps + 1):
         if point == jump_point:
-            state += jump
+            for k in range(state.size):
+                state[k] += jump[k]
         culprit = first_beyond(state, limit)
         if culprit >= 0:
             return point, culprit
         first, last = first_row[point], first_row[point + 1]
         if first < last and inside[first] < 0:
-            trajectory[first] = state
+            for k in range(state.size):
+                trajectory[first, k] = state[k]
             first += 1
         if point == steps:
             break

@@ -101,6 +101,8 @@ def integrate(
         method.step_weights,
         machine.plant(),
         extras,
+        np.empty((method.nodes.size, state.size)),
+        np.empty(state.size),
         states,
     )
     solve_s = time.perf_counter() - began

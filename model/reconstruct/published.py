@@ -18,7 +18,7 @@ QUIET_BELOW_HZ = 8.0
 
 QUIET_AGAIN_HZ = (17.0, 20.0)
 """Section 4.2, Figs. 4 and 5: "finally to stable small-amplitude vibration". The text gives no
-frequency from which on; 17 Hz is what issue 5 was given."""
+frequency from which on; 17 Hz is that of rig/reconstruction.md ("no vibration ... at 17-20 Hz")."""
 
 STIFFNESS_N_PER_M = (1410.0, 1410.0, 1580.0, 1580.0, 1560.0, 1100.0, 1100.0, 1560.0)
 """k_w, Section 5."""

@@ -4,9 +4,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from model import compiled
+from cdpr8.rigfile import Excitation, Rig
+from model import ActiveEffect, compiled, simulate
 
 
 def test_the_package_and_its_command_start_without_the_heavy_libraries() -> None:
@@ -53,3 +55,38 @@ def test_a_read_only_home_costs_the_cache_and_nothing_else(
     blocked.write_text("")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
     assert compiled.cache_folder() is None
+
+
+def test_one_process_serves_each_configuration_its_own_kernel(rig: Rig) -> None:
+    motion = Excitation(rest_s=0.0, motion_s=0.3, ramp_s=0.1)
+    damped = [ActiveEffect("cable_viscous")]
+    with_state = [ActiveEffect("cable_relaxation")]
+    configurations = [
+        {"effects": ()},
+        {"effects": damped},
+        {"effects": with_state},
+        {"effects": (), "drive": "winch"},
+        {"effects": damped, "drive": "winch"},
+    ]
+    first = [simulate(rig, motion, **how).tension_n for how in configurations]
+    # The other way round, after all of them are compiled: nobody gets what another asked for.
+    again = [simulate(rig, motion, **how).tension_n for how in reversed(configurations)]
+    for one, other in zip(first, reversed(again), strict=True):
+        assert np.array_equal(one, other)
+    for number, one in enumerate(first):
+        for other in first[:number]:
+            assert np.abs(one - other).max() > 1e-6
+
+
+def test_another_lane_width_asks_for_another_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from model.library import lanes
+
+    before = compiled.fingerprint()
+    changed = tmp_path / "lanes.py"
+    text = Path(str(lanes.__file__)).read_text()
+    assert "LANES = 16" in text
+    changed.write_text(text.replace("LANES = 16", "LANES = 32"))
+    monkeypatch.setattr(lanes, "__file__", str(changed))
+    assert compiled.fingerprint() != before

@@ -25,7 +25,7 @@ def test_the_nominal_platform_follows_the_command_to_rounding(
     run = simulate(rig, course, step_s=1e-3)
     followed = run.t_s <= run.steady_window_s[1]
     assert np.abs(run.commanded_pose).max() > np.deg2rad(7.5)
-    assert np.abs(run.pose - run.commanded_pose)[followed].max() < 1e-11
+    assert np.abs(run.pose - run.commanded_pose)[followed].max() < 1e-10
 
 
 def test_large_motion_that_slackens_a_cable_is_still_followed(rig: Rig) -> None:

@@ -33,6 +33,8 @@ def problem(rig: Rig, steps_taken: int, effects: tuple[ActiveEffect, ...] = ()) 
         method.step_weights,
         task.machine.plant(),
         pack(task.machine, effects),
+        np.zeros((method.nodes.size, states)),
+        np.zeros(states),
         np.zeros((2 * steps_taken + 2, states)),
     )
 

@@ -50,7 +50,10 @@ def test_repetitions_change_offsets_and_step_a_little_and_the_first_changes_noth
     plan = Plan(BRIEF, (4.0,), repetitions=4, spread=0.1, seed=5)
     rows = table(sweep(rig, plan))
     assert rows["repetition"].tolist() == [0, 1, 2, 3]
-    assert (rows["step_s"] / rows["step_s"].max()).round(2).tolist() == [1.0, 0.5, 1.0, 0.5]
+    # Half the step or less: steps meet whole rows, 3 ms gives way to 1 ms.
+    steps = rows["step_s"].to_numpy()
+    assert steps[0] == steps[2] >= 2.0 * steps[1] > 0
+    assert steps[1] == steps[3]
     own, changed = (start(plan, k, Job(k, {}, 5).generator()) for k in (0, 2))
     assert own.cable_offset_m == BRIEF.cable_offset_m
     share = np.array(changed.cable_offset_m) / BRIEF.cable_offset_m

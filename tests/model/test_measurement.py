@@ -1,0 +1,79 @@
+"""Every effect of cell, camera and clock: what it does to a known tension and pose, and no more."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from model.effects import library
+
+TIME_S = np.arange(4001) / 1000.0
+CIRCULAR = 2.0 * np.pi * 2.0
+TENSION = 10.0 + np.sin(CIRCULAR * TIME_S)[:, None] + np.arange(8.0)
+
+
+def pose_at(stamp_s: np.ndarray) -> np.ndarray:
+    return np.asarray(stamp_s)[:, None] * np.arange(1.0, 7.0)
+
+
+def cell(name: str, value: float, cable: int = 3) -> np.ndarray:
+    """What the cells report with the effect at one cable."""
+    (parameter,) = library()[name].parameters
+    values = np.zeros(8)
+    values[cable - 1] = value
+    seen = library()[name].measure(TIME_S, TENSION, **{parameter.name: values})
+    others = np.delete(np.arange(8), cable - 1)
+    assert np.array_equal(seen[:, others], TENSION[:, others]), "other channels stay clean"
+    return seen[:, cable - 1]
+
+
+def lag_is_first_order(seen: np.ndarray, true: np.ndarray) -> bool:
+    last = TIME_S >= 2.0
+    wave = np.exp(-1j * CIRCULAR * TIME_S[last])[:-1]
+    answer = (seen[last][:-1] @ wave) / (true[last][:-1] @ wave)
+    return bool(abs(answer - 1.0 / (1.0 + 0.01j * CIRCULAR)) < 1e-4)
+
+
+CELLS: list[tuple[str, float, Callable[[np.ndarray, np.ndarray], bool]]] = [
+    ("cell_gain", 0.02, lambda seen, true: np.allclose(seen / true, 1.02, rtol=1e-14)),
+    ("cell_zero", 0.2, lambda seen, true: np.allclose(seen - true, 0.2, atol=1e-14)),
+    ("cell_drift", 0.01, lambda seen, true: np.allclose(seen - true, 0.01 * TIME_S, atol=1e-14)),
+    ("cell_lag", 0.01, lag_is_first_order),
+    ("cell_saturation", 12.5, lambda seen, true: np.array_equal(seen, np.minimum(true, 12.5))),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "holds"), CELLS, ids=[one[0] for one in CELLS])
+def test_a_cell_spoils_its_own_channel_as_it_says(
+    name: str, value: float, holds: Callable[[np.ndarray, np.ndarray], bool]
+) -> None:
+    seen = cell(name, value)
+    assert holds(seen, TENSION[:, 2])
+    assert np.abs(seen - TENSION[:, 2]).max() > 1e-3
+
+
+def test_swapped_cells_show_each_others_tension() -> None:
+    chosen = np.isin(np.arange(8), (1, 4)).astype(float)
+    seen = library()["cell_swapped"].measure(TIME_S, TENSION, swapped=chosen)
+    assert np.array_equal(seen, TENSION[:, [0, 4, 2, 3, 1, 5, 6, 7]])
+
+
+CAMERAS: list[tuple[str, dict[str, float], Callable[[np.ndarray], np.ndarray]]] = [
+    ("camera_latency", {"latency_s": 0.01}, lambda t: pose_at(t - 0.01)),
+    ("camera_gain", {"gain_share": 0.02}, lambda t: 1.02 * pose_at(t)),
+    ("clock_drift", {"drift_ppm": 100.0}, lambda t: pose_at(t / 1.0001)),
+    (
+        "frames_dropped",
+        {"frames": 2.0, "at_s": 3.0, "frame_hz": 16.0},
+        lambda t: pose_at(np.where(t < 3.0, t, t + 0.125)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("name", "values", "wanted"), CAMERAS, ids=[one[0] for one in CAMERAS])
+def test_a_camera_and_its_clock_shift_and_scale_as_they_say(
+    name: str, values: dict[str, float], wanted: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    seen = library()[name].measure(pose_at, **values)(TIME_S)
+    assert seen == pytest.approx(wanted(TIME_S), rel=1e-12, abs=1e-12)
+    assert np.abs(seen - pose_at(TIME_S)).max() > 1e-4
