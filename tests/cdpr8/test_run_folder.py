@@ -200,15 +200,20 @@ def test_the_schemas_and_the_page_are_those_of_the_definitions() -> None:
         assert json.loads((document.SCHEMA_FOLDER / name).read_text()) == schema
 
 
+def schema_faults(value: object, schema: dict[str, object]) -> list[str]:
+    return [fault.message for fault in jsonschema.Draft202012Validator(schema).iter_errors(value)]
+
+
 def test_a_written_run_obeys_the_schemas(tmp_path: Path) -> None:
     write_run(tmp_path / "run")
     schemas = document.schemas()
     for record in ("start", "stop"):
         value = json.loads((tmp_path / "run" / f"{record}.json").read_text())
-        jsonschema.validate(value, schemas[f"{record}.schema.json"])
+        assert list(schema_faults(value, schemas[f"{record}.schema.json"])) == []
     rows = json.loads(load_run(tmp_path / "run").tension.to_json(orient="records"))
+    assert len(rows) == 40
     for row in rows:
-        jsonschema.validate(row, schemas["tension.row.schema.json"])
+        assert list(schema_faults(row, schemas["tension.row.schema.json"])) == []
 
 
 def test_a_run_carries_the_intrinsics_file_that_its_rig_names(tmp_path: Path) -> None:

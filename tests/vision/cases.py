@@ -1,4 +1,4 @@
-"""The rendered cases by which `vision` is measured: issue 4's table.
+"""The rendered cases by which `vision` is measured: the table of docs/vision.md.
 
 1280 x 1024 px, f = 1500 px, 1 m away, noise 2/255, blur 0.7 px, 2 deg of pitch at 2.06 Hz. Only
 the part of the sensor that shows the plate is rendered; `film` and the renderer share no code with
