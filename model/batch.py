@@ -12,7 +12,7 @@ from cdpr8 import CABLES
 from model.compiled import Announce, compiled, lane_integrator
 from model.extras import cable_numbers, pack, state_count, switches
 from model.kernel import STATES, Extras
-from model.library.lanes import LANES, PLATFORM
+from model.library.lanes import LANES, PLATFORM, WORK
 from model.library.selection import ActiveEffect
 from model.method import Method, find_method
 from model.simulation import Simulation
@@ -125,6 +125,8 @@ def _run(
     trajectory = np.empty((LANES, rows, lanes.states))
     blown_point = np.full(LANES, -1, dtype=np.int64)
     culprit = np.full(LANES, -1, dtype=np.int64)
+    rates = np.empty((method.stage_weights.shape[0], state.size))
+    trial, work = np.empty(state.size), np.empty(WORK["end"] * LANES)
     solve = lane_integrator(announce)
     solve_s = 0.0
     for part, drive in _drives(lanes, method, steps):
@@ -144,6 +146,9 @@ def _run(
             method.step_weights,
             numbers,
             lanes.extras,
+            rates,
+            trial,
+            work,
             trajectory,
             blown_point,
             culprit,
@@ -153,7 +158,7 @@ def _run(
         solve_s += time.perf_counter() - began
     cables = np.empty((LANES, 5, rows, CABLES))
     compiled("observe_lanes")(
-        trajectory, _drive_at_outputs(lanes, steps), numbers, lanes.extras, cables
+        trajectory, _drive_at_outputs(lanes, steps), numbers, lanes.extras, trial, work, cables
     )
     for lane, place in enumerate(places):
         end = int(blown_point[lane]) if culprit[lane] >= 0 else steps.point_s.size

@@ -26,18 +26,7 @@ FAST = {"reassoc", "nsz", "arcp", "contract", "afn"}
 
 UNCOUNTED = {"_nrt": False}
 """No counting of references to arrays: their counts, atomic, took most of the time. So compiled
-functions allocate nothing: Python gives them their room."""
-
-COUNTED = (
-    "lane_row",
-    "lane_pull",
-    "lane_rates",
-    "lane_wrench",
-    "lane_derivative",
-    "cables_elastic",
-    "vibrate",
-)
-"""Functions that use `lane_row`, and it: a part of an array that is returned has to be counted."""
+functions allocate nothing, and return no part of an array: Python gives them their room."""
 
 INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
 """Small next to their many arguments: a call would cost more than the work."""
@@ -154,11 +143,9 @@ def compiled(name: str) -> Any:
     from model import kernel, lanes
 
     module: ModuleType = kernel if name in SCALAR else lanes
-    options: dict[str, Any] = {"error_model": "numpy"}
+    options: dict[str, Any] = {"error_model": "numpy", **UNCOUNTED}
     if name in LANE:
         options["fastmath"] = FAST
-    else:
-        options |= UNCOUNTED
     _compile_laws()
     folder = cache_folder()
     before = numba.config.CACHE_DIR
@@ -185,5 +172,4 @@ def _compile_laws() -> None:
                 and law.__name__ not in SCALAR + LANE
             ):
                 inline = {"forceinline": True} if law.__name__ in INLINE else {}
-                counted = {} if law.__name__ in COUNTED else UNCOUNTED
-                register_jitable(error_model="numpy", **counted, **fast, **inline)(law)
+                register_jitable(error_model="numpy", **UNCOUNTED, **fast, **inline)(law)

@@ -25,7 +25,6 @@ from model.kinematics import (
     transform,
 )
 from model.library.assembled import lane_pull, lane_rates, lane_wrench
-from model.library.lanes import lane_row
 from model.platform import acceleration
 
 Array = NDArray[np.float64]
@@ -167,7 +166,8 @@ def locate(y: Array, work: Array) -> None:
 
 def cables_elastic(i: int, y: Array, command: Array, own: Array, work: Array) -> None:
     """Eqs. 9 to 16 for cable i."""
-    mid_span, mid_span_rate = lane_row(y, 12 + i), lane_row(y, 12 + CABLES + i)
+    at, at_rate = (12 + i) * LANES, (12 + CABLES + i) * LANES
+    mid_span, mid_span_rate = y[at : at + LANES], y[at_rate : at_rate + LANES]
     for w in range(LANES):
         work[MID_SPAN + w] = mid_span[w]
         work[MID_SPAN_RATE + w] = mid_span_rate[w]
@@ -259,7 +259,8 @@ def vibrate(i: int, own: Array, work: Array, f: Array) -> None:
             own[LINE_DENSITY + w],
             own[DAMPING + w],
         )
-    rate, acceleration_ = lane_row(f, 12 + i), lane_row(f, 12 + CABLES + i)
+    at, at_rate = (12 + i) * LANES, (12 + CABLES + i) * LANES
+    rate, acceleration_ = f[at : at + LANES], f[at_rate : at_rate + LANES]
     for w in range(LANES):
         rate[w] = work[MID_SPAN_RATE + w]
         acceleration_[w] = work[ACCELERATION + w]
@@ -429,6 +430,9 @@ def integrate_lanes(
     step_weights: Array,
     q: Array,
     extras: Any,
+    rates: Array,
+    trial: Array,
+    work: Array,
     trajectory: Array,
     blown_point: NDArray[np.int64],
     culprit: NDArray[np.int64],
@@ -447,6 +451,8 @@ def integrate_lanes(
         Shape (n, stages, 6 or 22, 1 or LANES): one for all, or each its own.
     q, extras
         The machines and the effects that are on in any of them.
+    rates, trial, work
+        Room to work in, shapes (stages, s * LANES), (s * LANES,) and (WORK,).
     trajectory
         Filled, shape (LANES, rows, s).
     blown_point, culprit
@@ -457,9 +463,6 @@ def integrate_lanes(
         Whether the last point is the end of the run: else the next call treats it.
     """
     stages, needed = step_weights.size, stage_weights.shape[0]
-    rates = np.empty((needed, y.size))
-    trial = np.empty(y.size)
-    work = np.empty(WORK)
     steps = step_s.size
     for point in range(steps + 1 if to_end else steps):
         if point == jump_point:
@@ -487,7 +490,15 @@ def integrate_lanes(
         lane_advance(y, h, step_weights, rates, stages, y)
 
 
-def observe_lanes(states: Array, drive: Array, q: Array, extras: Any, cables_out: Array) -> None:
+def observe_lanes(
+    states: Array,
+    drive: Array,
+    q: Array,
+    extras: Any,
+    y: Array,
+    work: Array,
+    cables_out: Array,
+) -> None:
     """As `model.kernel.observe`, for all lanes.
 
     Parameters
@@ -498,13 +509,13 @@ def observe_lanes(states: Array, drive: Array, q: Array, extras: Any, cables_out
         Shape (n or 1, 6 or 22, 1 or LANES).
     q, extras
         The machines and the effects that are on in any of them.
+    y, work
+        Room to work in, shapes (s * LANES,) and (WORK,).
     cables_out
         Filled with L_i, Delta L_i, v_yi, the tension at the anchor and behind the pulley, shape
         (LANES, 5, n, 8).
     """
-    work = np.empty(WORK)
     stride = (q.size - PLATFORM) // CABLES
-    y = np.empty(states.shape[2] * LANES)
     for row in range(states.shape[1]):
         for k in range(states.shape[2]):
             for w in range(LANES):

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 from model.library import assembly
-from model.library.lanes import lane_row
 
 TEXT = assembly.text()
 
@@ -13,7 +12,6 @@ RATED = assembly.rated()
 
 _functions: dict[str, Any] = {
     "__name__": __name__,
-    "lane_row": lane_row,
     **assembly.laws(),
 }
 exec(compile(TEXT, "<laws of model.effects>", "exec"), _functions)

@@ -6,7 +6,6 @@ Flat arrays with constant offsets are what the compiler turns into vector instru
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
 
 LANES = 16
 """Simulations side by side. Part of the compiled text: the kernel's fingerprint covers it."""
@@ -76,8 +75,3 @@ def number_of(name: str) -> int:
         return CABLE[name]
     vector, axis = name.rsplit("_", 1)
     return CABLE[vector] + "xyz".index(axis)
-
-
-def lane_row(values: Any, row: int) -> Any:
-    """One quantity of all lanes. A part that starts at 0 spares the vector loops a gather."""
-    return values[row * LANES : (row + 1) * LANES]

@@ -130,7 +130,7 @@ def test_lanes_against_the_scalar_kernel(rig: Rig, paper: Excitation) -> None:
         names = ", ".join(one.name for one in effects) or "no effect"
         say(f"\nlane kernel, {names}: {alone / lanes:.1f} times as fast as the scalar one")
         # The bar is 4, and missed since the scalar kernel became 2.8 times faster: docs/speed.md.
-        assert alone > 1.2 * lanes
+        assert alone > 1.5 * lanes
 
 
 def test_cost_of_effects(rig: Rig, paper: Excitation) -> None:
