@@ -1,7 +1,6 @@
 """Reading a run folder: every run loads, whatever cut it short, and what is missing is said."""
 
 import io
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -244,8 +243,3 @@ def _bad_record(path: Path, error: Exception) -> DataError:
             allowed=f"the keys of cdpr8/runfolder/schemas/{path.stem}.schema.json",
         )
     return DataError(f"cannot be read: {error}", where=str(path))
-
-
-def as_json(record: StartRecord | StopRecord) -> str:
-    """A record as the JSON text that stands in the run folder."""
-    return json.dumps(record.model_dump(mode="json"), indent=1) + "\n"
