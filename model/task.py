@@ -19,6 +19,7 @@ from model.library.selection import ActiveEffect, of_rig, those_that_act
 from model.machine import Machine
 from model.method import Method, find_method
 from model.motion import Motion, RampedSine
+from model.rest import rest_pose
 from model.steps import Steps, divide
 
 Array = NDArray[np.float64]
@@ -202,7 +203,27 @@ class Task:
         """The state before the first point."""
         if not steps.jump_point:
             return np.zeros(self.states)
-        return self._state_at(0.0, -1.0)
+        state = self._state_at(0.0, -1.0)
+        if self.drive_kind == "wrench" and not state[:12].any():
+            state[:6] = self._rest_pose
+        return state
+
+    @cached_property
+    def _rest_pose(self) -> Array:
+        """Where the plant hangs, with the drive as it is at rest."""
+        if self.machine is self.nominal_machine or not self._differs:
+            return np.zeros(6)
+        at_s, before = np.zeros((1, 1)), np.full((1, 1), -1.0)
+        wrench = drive_table(self.nominal_machine, self.driven, at_s, before, "wrench")[0, 0, :6]
+        return rest_pose(self.machine, self.extras, wrench, self.states)
+
+    @property
+    def _differs(self) -> bool:
+        """Whether the plant may hang elsewhere than the machine that the drive was made for."""
+        return bool(self.acting) or any(
+            not np.array_equal(one, other)
+            for one, other in zip(self.machine.plant(), self.nominal_machine.plant(), strict=True)
+        )
 
     def jump(self, steps: Steps) -> Array:
         """What the state gains when the motion starts: any jump of X* and X*', X_p0 and X_w0."""

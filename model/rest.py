@@ -1,0 +1,79 @@
+"""Where a machine comes to rest: what it starts from where it is not the one the drive was made for.
+
+A platform whose mass, pretension or geometry is not quite that of the drive's machine hangs beside
+X* = 0; started there, with no damping of its own, it would ring for the whole of the run.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.compiled import compiled
+from model.kernel import Extras
+from model.machine import Machine
+
+Array = NDArray[np.float64]
+
+MOST_ROUNDS = 12
+CLOSE_M = 1e-10
+"""Rounds end when the platform moves by less than this."""
+
+STEP = 1e-6
+"""Of the differences, m and rad."""
+
+FARTHEST_M = 0.3
+"""A platform that would hang farther off than this has no rest worth the name."""
+
+
+def rest_pose(machine: Machine, extras: Extras | None, wrench: Array, states: int) -> Array:
+    """The pose at which cables, weight and a constant wrench balance.
+
+    Parameters
+    ----------
+    machine
+        The plant.
+    extras
+        Effects in the kernel; what they add to tensions at rest counts, their memory is empty.
+    wrench
+        Of the drive at rest, N and N m, shape (6,).
+    states
+        Length of the state vector.
+
+    Returns
+    -------
+    Array
+        Shape (6,), m and rad; zeros where there is none near X* = 0.
+    """
+    observe, plant = compiled("observe"), machine.plant()
+    cables = np.empty((5, 7, machine.cables))
+    no_drive = np.zeros((1, 6))
+    shown = np.zeros((7, states))
+    pose = np.zeros(6)
+    for _ in range(MOST_ROUNDS):
+        shown[:, :6] = pose + np.vstack([np.zeros(6), STEP * np.eye(6)])
+        observe(shown, no_drive, plant, extras, cables)
+        left = np.array([_pull(machine, *one) for one in zip(shown[:, :6], cables[3], strict=True)])
+        left += wrench
+        left[:, 2] -= machine.mass * machine.gravity
+        move = -np.linalg.solve(((left[1:] - left[0]) / STEP).T, left[0])
+        pose = pose + move
+        if not np.abs(pose).max() < FARTHEST_M:
+            break
+        if np.abs(move).max() < CLOSE_M:
+            return pose if np.abs(pose).max() > 10.0 * CLOSE_M else np.zeros(6)
+    return np.zeros(6)
+
+
+def _pull(machine: Machine, pose: Array, tension: Array) -> Array:
+    """Force and moment of the cables on the platform, shape (6,)."""
+    roll, pitch, yaw = pose[3:]
+    about_x = np.array(
+        [[1, 0, 0], [0, np.cos(roll), -np.sin(roll)], [0, np.sin(roll), np.cos(roll)]]
+    )
+    about_y = np.array(
+        [[np.cos(pitch), 0, np.sin(pitch)], [0, 1, 0], [-np.sin(pitch), 0, np.cos(pitch)]]
+    )
+    about_z = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+    arm = machine.anchor @ (about_z @ about_y @ about_x).T
+    along = machine.base - pose[:3] - arm
+    force = tension[:, None] * along / np.linalg.norm(along, axis=1, keepdims=True)
+    return np.concatenate([force.sum(axis=0), np.cross(arm, force).sum(axis=0)])
