@@ -3,6 +3,7 @@
 from cdpr8.errors import RigFileError
 from cdpr8.rigfile.schema import Amplifier, Rig
 from rig.amplifier.frame import BUS_MODE, POWER_ON_STREAM, FrameFormat
+from rig.amplifier.text_frame import formats_of
 from rig.transport import LineSettings
 
 
@@ -12,7 +13,7 @@ def amplifiers(rig: Rig) -> dict[int, Amplifier]:
     Raises
     ------
     RigFileError
-        A cable has none, two share an address, or the format is none of the bus mode.
+        A cable has none, two share an address, or the format cannot be used.
     """
     found: dict[int, Amplifier] = {}
     for cable, entry in enumerate(rig.cable, start=1):
@@ -30,22 +31,31 @@ def amplifiers(rig: Rig) -> dict[int, Amplifier]:
                     allowed="each address once, 0 to 31",
                 )
         found[cable] = entry.amplifier
-    cof = rig.bus.output_format
-    try:
-        FrameFormat.of_output_format(cof, 0, crlf=True)
-        in_bus_mode = bool(cof & BUS_MODE) and cof < POWER_ON_STREAM
-    except ValueError:
-        in_bus_mode = False
-    if not in_bus_mode:
-        raise RigFileError(
-            f"[bus] output_format = {cof} gives no binary values in bus mode",
-            where=rig.name,
-            allowed="16, 18, 20, 22, 24 or 28 (and these + 32)",
-            remedy="24: 4 bytes with status",
-        )
+    _check_format(rig)
     return found
 
 
 def line_settings(rig: Rig) -> LineSettings:
     """Speed and framing of the rig file's bus."""
     return LineSettings(rig.bus.baud, rig.bus.parity)
+
+
+def _check_format(rig: Rig) -> None:
+    cof = rig.bus.output_format
+    found = formats_of(cof, 0, 0) if cof < POWER_ON_STREAM else ()
+    if rig.bus.streaming:
+        if not any(each.alignable for each in found):
+            raise RigFileError(
+                f"[bus] output_format = {cof} is no format of measured values",
+                where=rig.name,
+                allowed="8 or 12 (4 bytes), 0 or 4, 2 or 6 (2 bytes), 1, 3, 9 or 11 (text); "
+                "+ 32 without CR LF; the bus mode's 16 does not matter where streaming = true",
+                remedy="8: 4 bytes with a checksum, CR LF at the end",
+            )
+    elif not (cof & BUS_MODE and any(isinstance(each, FrameFormat) for each in found)):
+        raise RigFileError(
+            f"[bus] output_format = {cof} gives no binary values in bus mode",
+            where=rig.name,
+            allowed="16, 18, 20, 22, 24 or 28 (and these + 32)",
+            remedy="24: 4 bytes with status",
+        )

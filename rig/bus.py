@@ -1,7 +1,5 @@
 """The amplifiers' bus: start it, take one value at a time, bring a lost node back, stop it."""
 
-from contextlib import suppress
-
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Rig
 from rig.amplifier import message
@@ -21,7 +19,7 @@ STOP_WAIT_S = 0.1
 VALUE_MARGIN_S = 0.02
 """How much longer than its bytes a value may take (protocol note, section 10, timeouts)."""
 
-JITTER_S = 0.001
+JITTER_S = 0.0005
 """How much the way to the node and back may vary, in adapters, without the computer's fault."""
 
 ALL_STOP = message.END + message.select(message.BROADCAST) + message.command("STP")
@@ -81,9 +79,15 @@ class Bus:
             node.identify()
             settings[cable] = node.configure(self._settings)
         self._dialogue.tell(ALL_MEASURE)
-        return tuple(
+        stations = tuple(
             self._station(cable, identities[cable], settings[cable]) for cable in self._amplifiers
         )
+        self._dialogue.unused()  # of the setting up, not of the run
+        return stations
+
+    def unused(self) -> bytes:
+        """Bytes that came since the last call and became neither a value nor a told bad frame."""
+        return self._dialogue.unused()
 
     def take(self, station: Station, following: Station | None = None) -> Value:
         """The newest value of one amplifier.
@@ -111,8 +115,10 @@ class Bus:
             raise
         if following is not None:
             # Bytes that came unasked are the next value's trouble, not this one's.
-            with suppress(BadFrameError):
+            try:
                 self._ask(following)
+            except BadFrameError as fault:
+                self._dialogue.keep(fault.raw)
         return value
 
     def bring_back(self, station: Station) -> bool:
@@ -124,8 +130,11 @@ class Bus:
             Whether it gives values again.
         """
         self._asked = None
-        with suppress(BadFrameError):
+        try:
             self._take(station)
+        except BadFrameError as fault:
+            self._dialogue.keep(fault.raw)
+        else:
             return True
         node = NodeClient(self._dialogue, station.address)
         try:
@@ -144,7 +153,6 @@ class Bus:
             raise
         except DeviceError:
             self._dialogue.settle()
-            self.transport.discard()
             return False
         return True
 
@@ -182,7 +190,7 @@ class Bus:
         """Stop all output and wait for silence."""
         self._asked = None
         self._dialogue.tell(ALL_STOP)
-        self.transport.drain(STOP_WAIT_S)
+        self._dialogue.hush(STOP_WAIT_S)
 
     def _ask(self, station: Station) -> None:
         if stray := self.transport.discard():
@@ -213,27 +221,36 @@ class Bus:
 
         A busy computer notices an answer late, and the arrival with it; a node always takes about
         the same time to answer. So an answer began no later than the request had gone out, plus
-        the least time this node has ever taken, plus `JITTER_S`.
+        the least time this node has ever taken, plus `JITTER_S`. That least time counts from just
+        before the request was written: this thread may have stood still after it, and a node that
+        seems to answer too soon would pull all later answers with it.
         """
         line_s = len(station.request) * self.transport.line.char_s
         late_s = received_s - self._sent_s - line_s
-        least_s = min(late_s, self._least_late_s.get(station.address, late_s))
+        took_s = received_s - self._asked_s - line_s
+        least_s = min(took_s, self._least_late_s.get(station.address, took_s))
         self._least_late_s[station.address] = least_s
         return received_s - max(0.0, late_s - least_s - JITTER_S)
 
     def _identify_all(self) -> dict[int, Identity]:
         found: dict[int, Identity] = {}
         silent = []
+        garbled: dict[int, bytes] = {}
         for cable, amplifier in self._amplifiers.items():
             try:
                 identity = NodeClient(self._dialogue, amplifier.address).identify()
-            except NoAnswerError:
+            except NoAnswerError as fault:
+                if fault.came:
+                    garbled[cable] = fault.came
+                    continue
                 silent.append(cable)
                 if len(silent) > 2 and not found:
                     break
                 continue
             check_identity(self._rig, cable, amplifier, identity, self.transport.name)
             found[cable] = identity
+        if garbled:
+            raise self._garbled(garbled, silent)
         if silent:
             raise self._silent(silent, found)
         return found
@@ -253,6 +270,22 @@ class Bus:
             format=format_,
             scaling=Scaling.of(amplifier, format_, self._zeros.get(cable, 0.0)),
             period_s=profile.period_s(self._settings.icr),
+        )
+
+    def _garbled(self, came: dict[int, bytes], silent: list[int]) -> DeviceError:
+        cable = min(came)
+        what = f"cable {cable}: amplifier {self._amplifiers[cable].address:02d} answers garbled"
+        if len(came) > 1:
+            what += f", and {len(came) - 1} more do"
+        if silent:
+            addresses = (f"{self._amplifiers[each].address:02d}" for each in silent)
+            what += f", and nobody has address {', '.join(addresses)}"
+        return DeviceError(
+            f"{what} ({came[cable][:16]!r})",
+            allowed="one amplifier at each address",
+            where=self.transport.name,
+            remedy="two may share the address: `rig set-address` gives one of them another by its "
+            "serial number; else check wiring, baud and parity",
         )
 
     def _silent(self, cables: list[int], found: dict[int, Identity]) -> DeviceError:

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile import schema
+from rig.dropped_frames import DropCounter
+from rig.exposure_units import EXPOSURE_UNITS
 
 Image = NDArray[np.uint8]
 
@@ -87,8 +89,11 @@ class Camera(Protocol):
 class CaptureCamera:
     """A camera or a video file through OpenCV.
 
-    A frame is stamped on the host when it arrives; the middle of its exposure lies half an
-    exposure earlier (the transfer, some milliseconds, stays in as the camera's latency).
+    A frame is stamped by the driver where that keeps the host's monotonic clock (V4L2 does), else
+    when it arrives; the middle of its exposure lies half an exposure earlier (the transfer, some
+    milliseconds, stays in as the camera's latency). Frames lost are counted from the stamps: a
+    step of about n periods hides n - 1 frames. A frame that merely came late is followed by one
+    that comes early, and the two together take two periods.
 
     Parameters
     ----------
@@ -109,7 +114,7 @@ class CaptureCamera:
         self._cv2 = cv2
         self._clock = clock
         self.source = camera.source
-        self._is_device = camera.source.isdecimal()
+        self._is_device = camera.source.isdecimal() or _is_character_device(camera.source)
         self.fps, self.exposure_s = camera.fps, camera.exposure_s
         self._capture = self._open(camera)
         size = self._set(camera)
@@ -125,6 +130,7 @@ class CaptureCamera:
         self.width_px = size[0] if region is None else region.width_px
         self.height_px = size[1] if region is None else region.height_px
         self._last_mid_s: float | None = None
+        self._drops = DropCounter(camera.fps)
         self._start_s = 0.0
         self._count = 0
 
@@ -152,18 +158,15 @@ class CaptureCamera:
         if not self._is_device:
             # A file plays at the rig file's rate.
             self._clock.sleep_until(self._start_s + self._count / self.fps + self.exposure_s)
-        arrived = self._capture.grab()
-        t_mid_s = self._clock.monotonic_s() - self.exposure_s / 2.0
-        if not arrived:
+        if not self._capture.grab():
             return None
+        t_mid_s = self._stamp_s(self._clock.monotonic_s()) - self.exposure_s / 2.0
         ok, image = self._capture.retrieve()
         if not ok:
             return None
         if image.ndim == 3:
             image = self._cv2.cvtColor(image, self._cv2.COLOR_BGR2GRAY)
-        dropped = 0
-        if self._last_mid_s is not None and self._is_device:
-            dropped = max(0, round((t_mid_s - self._last_mid_s) * self.fps) - 1)
+        dropped = self._drops.before(t_mid_s) if self._is_device else 0
         self._last_mid_s = t_mid_s
         self._count += 1
         return Frame(np.ascontiguousarray(image[self._window]), t_mid_s, dropped)
@@ -172,6 +175,13 @@ class CaptureCamera:
         """Give the camera back."""
         self._capture.release()
 
+    def _stamp_s(self, arrived_s: float) -> float:
+        """The driver's time of the frame, where it is one of this clock; else its arrival."""
+        if not self._is_device:
+            return arrived_s
+        stamp_s = float(self._capture.get(self._cv2.CAP_PROP_POS_MSEC)) * 1e-3
+        return stamp_s if 0.0 <= arrived_s - stamp_s < MOST_TRANSFER_S else arrived_s
+
     def _open(self, camera: schema.Camera) -> Any:
         if not self._is_device and not Path(camera.source).exists():
             raise DeviceError(
@@ -179,7 +189,7 @@ class CaptureCamera:
                 allowed="a device number such as 0, a device, or a video file",
                 remedy="set [camera] source in the rig file, or try --simulated",
             )
-        source = int(camera.source) if self._is_device else camera.source
+        source = int(camera.source) if camera.source.isdecimal() else camera.source
         level = self._cv2.utils.logging.getLogLevel()
         self._cv2.utils.logging.setLogLevel(self._cv2.utils.logging.LOG_LEVEL_SILENT)
         try:
@@ -219,12 +229,24 @@ class CaptureCamera:
         return size
 
     def _set_exposure(self, exposure_s: float) -> None:
-        """V4L2 counts exposure in 100 microseconds; what other systems count in is not known."""
-        cv2 = self._cv2
-        if self._capture.getBackendName() != "V4L2":
+        """Set the exposure by hand and read it back; each system counts in units of its own."""
+        units = EXPOSURE_UNITS.get(self._capture.getBackendName())
+        if units is None:
             return
-        self._capture.set(cv2.CAP_PROP_AUTO_EXPOSURE, 1)  # V4L2_EXPOSURE_MANUAL
-        self._capture.set(cv2.CAP_PROP_EXPOSURE, exposure_s * 1e4)
-        answered = self._capture.get(cv2.CAP_PROP_EXPOSURE)
-        if answered > 0:
-            self.exposure_s = answered * 1e-4
+        cv2 = self._cv2
+        self._capture.set(cv2.CAP_PROP_AUTO_EXPOSURE, units.manual)
+        self._capture.set(cv2.CAP_PROP_EXPOSURE, units.spell(exposure_s))
+        answered = float(self._capture.get(cv2.CAP_PROP_EXPOSURE))
+        if (read_s := units.read_s(answered)) is not None:
+            self.exposure_s = read_s
+
+
+MOST_TRANSFER_S = 1.0
+"""A driver's stamp older than this is of another clock."""
+
+
+def _is_character_device(source: str) -> bool:
+    try:
+        return Path(source).is_char_device()
+    except OSError:
+        return False

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cdpr8.terminal import complain, entry, note, say_json, say_table
+from rig.command_amplifiers import set_address_command, set_baud_command
 from rig.command_before import doctor_command, pretension_command, zero_command
 from rig.command_runs import export_command, import_command, verify_command
 
 if TYPE_CHECKING:
     from cdpr8.rigfile import Excitation, Rig
+    from rig.command_log import CommandLog
     from rig.zeros import Zeros
 
 app = typer.Typer(
@@ -88,6 +90,20 @@ def record_command(
         str | None,
         typer.Option(help="Command to run when a cable is overloaded ($CDPR8_CABLE says which)."),
     ] = None,
+    command_log: Annotated[
+        str | None,
+        typer.Option(
+            help="The winch controller's log: a file that grows, or tcp://HOST:PORT that sends "
+            "lines."
+        ),
+    ] = None,
+    command_map: Annotated[
+        str | None,
+        typer.Option(
+            help="Which of its columns is what: time=COLUMN,1=COLUMN,2.measured_deg=COLUMN ...  "
+            "[default: its columns are those of command.csv]"
+        ),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Record tensions and video into a run folder.
@@ -126,15 +142,11 @@ def record_command(
         note(f"warning: {warning}")
     taken = _zeros(zeros, rig_path)
     folder = out or RUNS / (name or now.astimezone().strftime("%Y-%m-%dT%H-%M-%S"))
-    if machine.bus.port == SIMULATED:
-        note("recording the simulated rig, no hardware: the run is marked simulated")
-        if machine.camera is not None and machine.camera.source != SIMULATED:
-            note("the camera is left out beside a simulated port; --simulated simulates both")
-    elif machine.camera is not None and machine.camera.source == SIMULATED:
-        note("the rig file names no real camera ([camera] source): tensions only, no video")
+    _announce(machine)
     note(f"recording {excitation.duration_s:g} s into {folder}; Ctrl-C ends it in order")
     if sys.stdin.isatty():
         note("tap the platform before and after the motion, and press Enter with each tap")
+    log = _command_log(command_log, command_map)
     stop = StopRequest()
     with (
         stop.listening(),
@@ -155,6 +167,7 @@ def record_command(
             zeros=taken,
             taps=taps,
             beside_rig=files_beside(rig_text, rig_path.parent),
+            command_log=log,
         )
     if as_json:
         say_json(summary(recording))
@@ -226,6 +239,8 @@ def scan_command(
 app.command("doctor")(doctor_command)
 app.command("zero")(zero_command)
 app.command("pretension")(pretension_command)
+app.command("set-address")(set_address_command)
+app.command("set-baud")(set_baud_command)
 app.command("verify")(verify_command)
 app.command("export")(export_command)
 app.command("import")(import_command)
@@ -257,6 +272,31 @@ def _zeros(path: Path | None, rig_path: Path) -> "Zeros | None":
     if found is not None:
         note(f"zeros of the cells from {path or default_zeros_path(rig_path)}")
     return found
+
+
+def _announce(machine: "Rig") -> None:
+    """Say what is simulated and what is left out."""
+    if machine.bus.port == SIMULATED:
+        note("recording the simulated rig, no hardware: the run is marked simulated")
+        if machine.camera is not None and machine.camera.source != SIMULATED:
+            note("the camera is left out beside a simulated port; --simulated simulates both")
+    elif machine.camera is not None and machine.camera.source == SIMULATED:
+        note("the rig file names no real camera ([camera] source): tensions only, no video")
+
+
+def _command_log(where: str | None, map_: str | None) -> "CommandLog | None":
+    """The winch controller's log, opened."""
+    from cdpr8.errors import UsageError
+    from rig.command_log import open_command_log
+
+    if where is None:
+        if map_ is not None:
+            raise UsageError("--command-map without --command-log", allowed="both, or none")
+        return None
+    log = open_command_log(where, map_)
+    if not where.startswith("tcp://") and not Path(where).exists():
+        note(f"the command log {where} is not there yet; it is read once it appears")
+    return log
 
 
 def _excitation(

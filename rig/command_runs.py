@@ -1,11 +1,14 @@
 """`rig verify`, `rig export` and `rig import`: recorded runs."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cdpr8.terminal import note, say, say_json
+
+if TYPE_CHECKING:
+    from rig.import_run import ImportedCommand
 
 
 def verify_command(
@@ -72,6 +75,20 @@ def import_command(
         list[str] | None,
         typer.Option(help="An event seen in both, TABLE=VIDEO in s; twice also tells the rate."),
     ] = None,
+    command: Annotated[
+        Path | None, typer.Option(help="Log of the winch controller: text, with a time.")
+    ] = None,
+    command_map: Annotated[
+        str | None,
+        typer.Option(
+            help="Which of its columns is what: time=COLUMN,1=COLUMN,2.measured_deg=COLUMN ...  "
+            "[default: its columns are those of command.csv]"
+        ),
+    ] = None,
+    command_sync: Annotated[
+        list[str] | None,
+        typer.Option(help="An event seen in both, TABLE=LOG in s; twice also tells the rate."),
+    ] = None,
     rig: Annotated[Path | None, typer.Option("--rig", help="Rig file of the machine.")] = None,
     name: Annotated[str, typer.Option(help="Name of the run: the folder runs/NAME.")] = "imported",
 ) -> None:
@@ -85,7 +102,7 @@ def import_command(
     from rig.import_run import import_run
 
     path = find_rig_file(rig)
-    taps = [_tap(words) for words in sync or []]
+    taps = [_tap(words, "--sync") for words in sync or []]
     columns = ColumnMap.parse(map_)
     clock = ClockMap.of(taps)
     if video is not None and not taps:
@@ -104,19 +121,40 @@ def import_command(
         clock=clock,
         taps=tuple(taps),
         beside_rig=files_beside(rig_text, path.parent),
+        command=_imported_command(command, command_map, command_sync or []),
     )
     count = sum(stop.samples.values())
     say(f"run {folder}: {stop.t_s:.1f} s, {count} values, {stop.frames} frames")
     say(f"next:   rig verify {folder}")
 
 
-def _tap(words: str) -> tuple[float, float]:
+def _imported_command(
+    path: Path | None, map_: str | None, sync: list[str]
+) -> "ImportedCommand | None":
+    from cdpr8.errors import UsageError
+    from rig.command_columns import CommandColumns, read_command_table
+    from rig.foreign import ClockMap
+    from rig.import_run import ImportedCommand
+
+    if path is None:
+        if map_ is not None or sync:
+            raise UsageError("--command-map or --command-sync without --command")
+        return None
+    columns = CommandColumns.parse(map_)
+    clock = ClockMap.of([_tap(words, "--command-sync") for words in sync])
+    if not sync:
+        note("no --command-sync: the command log is taken to have the table's time")
+    text = f"{path}: {columns.text}; {clock.offset_s:+.6f} s, rate {clock.rate:.9f}"
+    return ImportedCommand(read_command_table(path, columns), clock, text)
+
+
+def _tap(words: str, option: str) -> tuple[float, float]:
     from cdpr8.errors import UsageError
 
     try:
-        table_s, video_s = (float(word) for word in words.split("="))
+        table_s, other_s = (float(word) for word in words.split("="))
     except ValueError:
         raise UsageError(
-            f"--sync {words!r} is no pair of times", allowed="TABLE=VIDEO, both in s: 2.31=1.04"
+            f"{option} {words!r} is no pair of times", allowed="TABLE=OTHER, both in s: 2.31=1.04"
         ) from None
-    return table_s, video_s
+    return table_s, other_s

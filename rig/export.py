@@ -5,6 +5,7 @@ Both formats depend on what is written last, so they are made from a finished ru
 
 import base64
 import json
+import math
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -12,10 +13,14 @@ from typing import Any
 
 from cdpr8 import CABLES
 from cdpr8.errors import UsageError
-from cdpr8.runfolder import Run, read_video
+from cdpr8.runfolder import POSE_AXES, Run, read_video
 
 PARQUET_FOLDER = "parquet"
 _NS = 1_000_000_000
+
+_COMMANDS = ("commanded_m", "measured_m", "commanded_deg", "measured_deg")
+_INFO, _WARNING = 2, 3
+_ORDINARY = frozenset({"motion_start", "motion_end", "clock_anchor", "sync_tap"})
 
 
 def export_parquet(run: Run, folder: Path) -> list[Path]:
@@ -35,6 +40,8 @@ def export_parquet(run: Run, folder: Path) -> list[Path]:
     tables = {"tension": run.tension, "frames": run.frames, "events": run.events}
     if run.pose is not None:
         tables["pose"] = run.pose
+    if run.command is not None:
+        tables["command"] = run.command
     about = {"cdpr8.start": run.start.model_dump_json()}
     written = []
     for name, frame in tables.items():
@@ -103,13 +110,54 @@ def _in_order(run: Run) -> Iterator[_Message]:
     for t_s, kind, detail in zip(
         run.events["t_s"], run.events["kind"], run.events["detail"], strict=True
     ):
-        yield at(t_s), "/events", "cdpr8.Event", {"kind": str(kind), "detail": str(detail)}
+        yield at(t_s), "/events", "foxglove.Log", _log(at(t_s), str(kind), str(detail))
+    if run.command is not None:
+        for row in run.command[["t_s", "cable", *_COMMANDS]].itertuples(index=False):
+            told = {name: float(getattr(row, name)) for name in _COMMANDS}
+            some = {name: value for name, value in told.items() if math.isfinite(value)}
+            yield at(row.t_s), f"/command/{row.cable}", "cdpr8.Command", some
     if run.pose is not None:
-        names = ("x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg")
-        for row in run.pose[["t_s", *names]].dropna().itertuples(index=False):
-            yield at(row.t_s), "/pose", "cdpr8.Pose", {n: float(getattr(row, n)) for n in names}
+        for row in run.pose[["t_s", *POSE_AXES]].dropna().itertuples(index=False):
+            values = {name: float(getattr(row, name)) for name in POSE_AXES}
+            yield at(row.t_s), "/pose/axes", "cdpr8.Pose", values
+            yield at(row.t_s), "/pose", "foxglove.PoseInFrame", _pose(at(row.t_s), values)
     if run.video is not None and len(run.frames):
         yield from _pictures(run, at)
+
+
+def _stamp(time_ns: int) -> dict[str, int]:
+    return {"sec": time_ns // _NS, "nsec": time_ns % _NS}
+
+
+def _log(time_ns: int, kind: str, detail: str) -> dict[str, Any]:
+    level = _INFO if kind in _ORDINARY else _WARNING
+    return {
+        "timestamp": _stamp(time_ns),
+        "level": level,
+        "message": f"{kind}: {detail}",
+        "name": "rig record",
+        "file": "events.csv",
+        "line": 0,
+    }
+
+
+def _pose(time_ns: int, values: dict[str, float]) -> dict[str, Any]:
+    """Position in m, and the quaternion of R = Rz(yaw) Ry(pitch) Rx(roll)."""
+    half = [math.radians(values[f"{axis}_deg"]) / 2.0 for axis in ("roll", "pitch", "yaw")]
+    (sr, sp, sy), (cr, cp, cy) = map(math.sin, half), map(math.cos, half)
+    return {
+        "timestamp": _stamp(time_ns),
+        "frame_id": "O-XYZ",
+        "pose": {
+            "position": {axis: values[f"{axis}_m"] for axis in "xyz"},
+            "orientation": {
+                "x": sr * cp * cy - cr * sp * sy,
+                "y": cr * sp * cy + sr * cp * sy,
+                "z": cr * cp * sy - sr * sp * cy,
+                "w": cr * cp * cy + sr * sp * sy,
+            },
+        },
+    }
 
 
 def _pictures(run: Run, at: Any) -> Iterator[_Message]:
@@ -123,7 +171,7 @@ def _pictures(run: Run, at: Any) -> Iterator[_Message]:
             "/camera",
             "foxglove.CompressedImage",
             {
-                "timestamp": {"sec": time_ns // _NS, "nsec": time_ns % _NS},
+                "timestamp": _stamp(time_ns),
                 "frame_id": "camera",
                 "format": "png",
                 "data": base64.b64encode(png.tobytes()).decode("ascii"),
@@ -137,19 +185,25 @@ def _object(**properties: dict[str, Any]) -> dict[str, Any]:
 
 _NUMBER, _TEXT, _WHOLE = {"type": "number"}, {"type": "string"}, {"type": "integer"}
 
+_TIME = _object(sec=_WHOLE, nsec=_WHOLE)
+_POINT = _object(x=_NUMBER, y=_NUMBER, z=_NUMBER)
+_QUATERNION = _object(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER)
+
 _SCHEMAS = {
     "cdpr8.Tension": _object(tension_n=_NUMBER, status=_WHOLE),
-    "cdpr8.Event": _object(kind=_TEXT, detail=_TEXT),
-    "cdpr8.Pose": _object(
-        x_m=_NUMBER,
-        y_m=_NUMBER,
-        z_m=_NUMBER,
-        roll_deg=_NUMBER,
-        pitch_deg=_NUMBER,
-        yaw_deg=_NUMBER,
+    "cdpr8.Command": _object(**dict.fromkeys(_COMMANDS, _NUMBER)),
+    "cdpr8.Pose": _object(**dict.fromkeys(POSE_AXES, _NUMBER)),
+    # Those that Foxglove's panels know by name; the fields are as it publishes them.
+    "foxglove.Log": _object(
+        timestamp=_TIME, level=_WHOLE, message=_TEXT, name=_TEXT, file=_TEXT, line=_WHOLE
+    ),
+    "foxglove.PoseInFrame": _object(
+        timestamp=_TIME,
+        frame_id=_TEXT,
+        pose=_object(position=_POINT, orientation=_QUATERNION),
     ),
     "foxglove.CompressedImage": _object(
-        timestamp=_object(sec=_WHOLE, nsec=_WHOLE),
+        timestamp=_TIME,
         frame_id=_TEXT,
         format=_TEXT,
         data={"type": "string", "contentEncoding": "base64"},

@@ -33,7 +33,7 @@ class ForeignTable:
     names: tuple[str, ...]
     values: Array
 
-    def column(self, key: str, where: str) -> Array:
+    def column(self, key: str, where: str, option: str = "--map") -> Array:
         """A column by its name, or by its number from 1.
 
         Raises
@@ -49,7 +49,7 @@ class ForeignTable:
         if key.isdecimal() and 1 <= int(key) <= len(self.names):
             return self.values[:, int(key) - 1]
         raise UsageError(
-            f"--map names the column {key!r}, which the table lacks",
+            f"{option} names the column {key!r}, which the table lacks",
             allowed=", ".join(
                 f"{number}: {name}" for number, name in enumerate(self.names, start=1)
             ),

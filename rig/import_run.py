@@ -2,7 +2,8 @@
 
 import hashlib
 import uuid
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -21,7 +22,27 @@ from cdpr8.runfolder import (
     read_video,
 )
 from cdpr8.runfolder.video import Image
+from rig.command_columns import Command
 from rig.foreign import ClockMap, ColumnMap, ForeignTable
+
+
+@dataclass(frozen=True)
+class ImportedCommand:
+    """A winch controller's log that another program wrote.
+
+    Attributes
+    ----------
+    rows
+        What it says, in its order.
+    clock
+        From its time to the tensions' table's.
+    description
+        Its name and columns, for start.json.
+    """
+
+    rows: Sequence[Command]
+    clock: ClockMap
+    description: str
 
 
 def import_run(
@@ -38,6 +59,7 @@ def import_run(
     taps: tuple[tuple[float, float], ...] = (),
     made: datetime | None = None,
     beside_rig: Mapping[str, bytes] | None = None,
+    command: ImportedCommand | None = None,
 ) -> StopRecord:
     """Write a run: tensions at the table's times, frames at theirs on the table's clock.
 
@@ -62,6 +84,8 @@ def import_run(
         When it was recorded; None takes now.
     beside_rig
         Files that the rig file names, for the run folder: `cdpr8.rigfile.files_beside`.
+    command
+        The winch controller's log, None where there is none.
     """
     clock = clock or ClockMap()
     times = table.column(columns.time, where)
@@ -82,6 +106,7 @@ def import_run(
         import_map=f"{where}: {columns.time} -> time, "
         + ", ".join(f"{key} -> cable {cable}" for cable, key in columns.cables.items())
         + f"; video: {clock.offset_s:+.6f} s, rate {clock.rate:.9f}",
+        command_log=None if command is None else command.description,
         versions=versions(),
     )
     writer = RunWriter(folder, start, rig_text, beside_rig)
@@ -99,6 +124,11 @@ def import_run(
                     }
                 )
                 samples[cable] += 1
+    if command is not None and writer.command is not None:
+        for each in command.rows:
+            log_s = float("nan") if each.log_s is None else each.log_s
+            t_s = command.clock.to_table_s(log_s) - origin_s
+            writer.command.append({"t_s": t_s, "cable": each.cable, **each.values, "log_s": log_s})
     for table_s, _ in taps:
         writer.event(table_s - origin_s, EventKind.SYNC_TAP, "seen in the table and the video")
     count = 0

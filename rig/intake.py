@@ -47,6 +47,11 @@ class Intake:
         """Note an event; `now_s` is on the clock of the values."""
         self._scribe.event(now_s - self._origin_s, kind, detail, cable)
 
+    def unused(self, now_s: float, data: bytes, cable: int | None = None) -> None:
+        """Note bytes that came and became no value: nothing that arrived is thrown away."""
+        words = f"{len(data)} bytes: {data.hex(' ').upper()}"
+        self.event(now_s, EventKind.STRAY_BYTES, words, cable)
+
     def forget(self, cable: int) -> None:
         """The cable's values were interrupted: whether the next one is stale is not known."""
         self._changed.pop(cable, None)
@@ -64,7 +69,7 @@ class Intake:
             status |= TensionStatus.UNCONFIRMED
             self._tally.lose("unconfirmed")
         else:
-            if self._stale(cable, reading.digits, value.received_s):
+            if station.scaling.fine and self._stale(cable, reading.digits, value.received_s):
                 status |= TensionStatus.STALE
             self._watch_overload(station, tension_n, status, value.received_s)
         self._scribe.sample(

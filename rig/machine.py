@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from typing import Protocol
 
-from cdpr8.clock import Clock, VirtualClock
+from cdpr8.clock import Clock, RealClock, VirtualClock
 from cdpr8.errors import DeviceError, RigFileError
 from cdpr8.rigfile import Excitation, Rig
 from rig.assignment import amplifiers
@@ -34,6 +34,9 @@ class Machine:
         Told the run's origin on the clock's seconds, before the first sample.
     close
         Gives everything back.
+    ready
+        Called before anything is written: waits for, and tells the faults of, what was begun when
+        the machine was opened.
     ports
         Where each amplifier has a line of its own: those of all cables, in order; `transport` is
         the first of them.
@@ -46,6 +49,7 @@ class Machine:
     begin: Callable[[float], None]
     close: Callable[[], None]
     ports: tuple[Transport, ...] = ()
+    ready: Callable[[], object] = lambda: None
 
 
 class OpenRig(Protocol):
@@ -85,6 +89,23 @@ def open_machine(rig: Rig, excitation: Excitation, clock: Clock, *, seed: int = 
             remedy="leave --virtual out, or add --simulated",
         )
     return _open_hardware(rig, clock)
+
+
+def open_line(rig: Rig) -> Transport:
+    """The amplifiers' line alone, without the camera, on the computer's clock.
+
+    Parameters
+    ----------
+    rig
+        As for `open_machine`; a bus, not one port for each amplifier.
+
+    Raises
+    ------
+    DeviceError
+        The port is missing or taken.
+    """
+    alone = rig.model_copy(update={"camera": None})
+    return open_machine(alone, alone.excitation, RealClock()).transport
 
 
 def _open_hardware(rig: Rig, clock: Clock) -> Machine:

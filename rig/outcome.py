@@ -18,6 +18,7 @@ def summary(recording: Recording) -> dict[str, Any]:
         "samples": stop.samples,
         "rate_per_s": {cable: round(recording.rate_per_s(cable), 2) for cable in stop.samples},
         "frames": stop.frames,
+        "commands": recording.commands,
         "lost": stop.lost,
         "fault": recording.fault.sentence() if recording.fault else None,
         "next": _next_commands(recording),
@@ -39,6 +40,8 @@ def show(recording: Recording) -> None:
     say_table(table)
     camera = start.camera
     say(f"frames: {stop.frames}" + (f" at {camera.fps:g}/s" if camera else " (no camera)"))
+    if recording.commands is not None:
+        say(f"command log: {recording.commands} rows from {start.command_log}")
     lost = (f"{_LOST.get(what, what)} {count}" for what, count in stop.lost.items())
     say("lost:   " + (", ".join(lost) or "nothing"))
     for line in _next_commands(recording):
@@ -72,5 +75,7 @@ _LOST = {
     "line_lost": "times the line was gone",
     "missing": "values missing in streams",
     "restart": "streams started anew",
+    "command_line": "lines of the command log not understood",
+    "command_log_lost": "times the command log was gone",
     "pause": "times the computer stood still",
 }

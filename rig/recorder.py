@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from cdpr8.clock import Clock, RealClock, VirtualClock
-from cdpr8.errors import DataError, DeviceError, ToolkitError
+from cdpr8.errors import DataError, DeviceError, ToolkitError, UsageError
 from cdpr8.rigfile import Excitation, Rig
 from cdpr8.runfolder import (
     ClockAnchor,
@@ -19,6 +19,7 @@ from cdpr8.runfolder import (
 )
 from rig.announcements import AnnouncementStream, announcements
 from rig.bus import Bus
+from rig.command_log import CommandLog, CommandStream
 from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
 from rig.reserve import Reserve
@@ -52,12 +53,15 @@ class Recording:
         Its records.
     fault
         What ended it before its time, None where nothing did.
+    commands
+        Rows of the command log, None where none was recorded.
     """
 
     folder: Path
     start: StartRecord
     stop: StopRecord
     fault: ToolkitError | None = None
+    commands: int | None = None
 
     def rate_per_s(self, cable: int) -> float:
         """Mean rate of a cable's samples."""
@@ -81,6 +85,7 @@ def record(
     zeros: Zeros | None = None,
     taps: Taps | None = None,
     beside_rig: Mapping[str, bytes] | None = None,
+    command_log: CommandLog | None = None,
 ) -> Recording:
     """Record one run.
 
@@ -118,6 +123,8 @@ def record(
         Where the user's sync taps come in.
     beside_rig
         Files that the rig file names, for the run folder: `cdpr8.rigfile.files_beside`.
+    command_log
+        The winch controller's log, opened; closed at the end. Needs a real clock.
 
     Returns
     -------
@@ -137,11 +144,14 @@ def record(
     clock = clock or RealClock()
     stop = stop or StopRequest()
     try:
+        if command_log is not None and isinstance(clock, VirtualClock):
+            raise UsageError("a command log comes in real time", remedy="leave --virtual out")
         _require_empty(folder)
         machine = machine or open_machine(rig, excitation, clock, seed=seed)
         session = _Session(machine, rig, clock, stop, excitation, alarm, zero_values(zeros))
-        session.taps = taps
+        session.taps, session.command_log = taps, command_log
         check_zeros(zeros, {each.cable: each.identity.serial_number for each in session.stations})
+        machine.ready()
         if stop.requested:
             raise KeyboardInterrupt  # nothing has been recorded
         now_s = clock.monotonic_s()
@@ -156,6 +166,7 @@ def record(
             seed=seed,
             zeros=zeros,
             anchor=ClockAnchor(t_s=-LEAD_S, wall=clock.wall()),
+            command_log=None if command_log is None else command_log.description,
         )
         writer = RunWriter(folder, start, rig_text, beside_rig)
         try:
@@ -163,8 +174,10 @@ def record(
         except OSError as error:
             raise _disk_fault(error, folder) from None
         stop_record, fault = session.run(writer, reserve, now_s + LEAD_S, watch)
-        return Recording(folder, start, stop_record, fault)
+        return Recording(folder, start, stop_record, fault, session.commands)
     finally:
+        if command_log is not None:
+            command_log.source.close()
         if machine is not None:
             machine.close()
 
@@ -184,6 +197,7 @@ class _Session:
     ) -> None:
         self._alarm = alarm
         self.taps: Taps | None = None
+        self.command_log: CommandLog | None = None
         self._machine = machine
         self._clock = clock
         self._stop = stop
@@ -199,6 +213,11 @@ class _Session:
             self.stations = self._bus.start()
         if machine.camera is not None:
             import av  # noqa: F401  # now, not between the start record and the first sample
+
+    @property
+    def commands(self) -> int | None:
+        """Rows of the command log so far."""
+        return None if self.command_log is None else self._tally.commands
 
     def run(
         self, writer: RunWriter, reserve: Reserve, origin_s: float, watch: Watch | None
@@ -249,6 +268,8 @@ class _Session:
             machine.camera.start(span.origin_s)
             streams.append(CameraStream(machine.camera, scribe, tally, span))
         clock = self._clock
+        if self.command_log is not None:
+            streams.append(CommandStream(self.command_log, scribe, tally, span, clock))
         own = VirtualClock(clock.epoch, clock.now_s) if isinstance(clock, VirtualClock) else clock
         announced = announcements(self._excitation, machine.motion_known)
         streams.append(AnnouncementStream(announced, own, scribe, span, self.taps))

@@ -8,13 +8,13 @@ neither a slow disk nor a slow encoder stalls the bus.
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
 from cdpr8.clock import Clock
-from cdpr8.runfolder import EventKind, FrameFlag, RunWriter, TableWriter
+from cdpr8.runfolder import EventKind, FrameFlag, RawLog, RunWriter, TableWriter
 from rig.camera import Image
 from rig.tally import Tally
 
@@ -44,6 +44,25 @@ class Sample:
     received_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class CommandRow:
+    """One row of command.csv; `values` are its four quantities by name."""
+
+    t_s: float
+    cable: int
+    values: Mapping[str, float]
+    log_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class CommandLine:
+    """One line of the winch controller's log as it came, and what it says."""
+
+    arrived_s: float
+    raw: bytes
+    rows: tuple[CommandRow, ...]
+
+
 class Scribe(Protocol):
     """What a stream hands its data to."""
 
@@ -53,6 +72,10 @@ class Scribe(Protocol):
 
     def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
         """Take one event."""
+        ...
+
+    def command(self, line: CommandLine) -> None:
+        """Take one line of the command log."""
         ...
 
     def frame(self, image: Image, t_s: float, flags: int) -> None:
@@ -93,6 +116,10 @@ class DirectScribe:
         self._writer.event(t_s, kind, detail, cable)
         self._tally.last_event = f"{kind.value}: {detail}"
 
+    def command(self, line: CommandLine) -> None:
+        """Write one line of the command log."""
+        _write_command(self._writer, line)
+
     def frame(self, image: Image, t_s: float, flags: int) -> None:
         """Write one frame."""
         self._writer.write_frame(image, t_s, flags)
@@ -128,7 +155,7 @@ class ThreadedScribe:
         self._writer = writer
         self._tally = tally
         self._clock = clock
-        self._lines: queue.SimpleQueue[Sample | _Event | None] = queue.SimpleQueue()
+        self._lines: queue.SimpleQueue[Sample | _Event | CommandLine | None] = queue.SimpleQueue()
         self._frames: queue.Queue[_Frame | None] = queue.Queue(FRAMES_WAITING)
         self._dropping = False
         self._hurry = hurry
@@ -147,6 +174,10 @@ class ThreadedScribe:
     def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
         """Queue one event; never waits."""
         self._lines.put(_Event(t_s, kind, detail, cable))
+
+    def command(self, line: CommandLine) -> None:
+        """Queue one line of the command log; never waits."""
+        self._lines.put(line)
 
     def frame(self, image: Image, t_s: float, flags: int) -> None:
         """Queue one frame; where too many wait already it is dropped, counted and said."""
@@ -192,7 +223,8 @@ class ThreadedScribe:
 
     def _write_lines(self) -> None:
         writer = self._writer
-        tables = (writer.tension, writer.events)
+        tables: list[TableWriter | RawLog] = [writer.tension, writer.events]
+        tables += [each for each in (writer.command, writer.command_text) if each is not None]
         flushed_s = synced_s = self._clock.monotonic_s()
         while True:
             # In batches: to be woken for every value would take the bus its turn a thousand
@@ -202,10 +234,12 @@ class ThreadedScribe:
                 return
             now_s = self._clock.monotonic_s()
             if now_s - synced_s >= SYNC_S:
-                _each(tables, TableWriter.sync)
+                for table in tables:
+                    table.sync()
                 synced_s = flushed_s = now_s
             elif now_s - flushed_s >= FLUSH_S:
-                _each(tables, TableWriter.flush)
+                for table in tables:
+                    table.flush()
                 flushed_s = now_s
 
     def _write_waiting(self) -> bool:
@@ -217,9 +251,11 @@ class ThreadedScribe:
             self._write_line(line)
         return False
 
-    def _write_line(self, line: "Sample | _Event") -> None:
+    def _write_line(self, line: "Sample | _Event | CommandLine") -> None:
         if isinstance(line, Sample):
             self._writer.tension.append(_row(line))
+        elif isinstance(line, CommandLine):
+            _write_command(self._writer, line)
         else:
             self._writer.event(line.t_s, line.kind, line.detail, line.cable)
             self._tally.last_event = f"{line.kind.value}: {line.detail}"
@@ -234,7 +270,7 @@ class ThreadedScribe:
             self._tally.frames += 1
             self._writer.frames.flush()
             if self._clock.monotonic_s() - synced_s >= SYNC_S:
-                self._writer.frames.sync()
+                self._writer.sync_frames()
                 synced_s = self._clock.monotonic_s()
 
 
@@ -265,6 +301,18 @@ def _row(sample: Sample) -> dict[str, float | int | str | None]:
     }
 
 
-def _each(tables: tuple[TableWriter, ...], act: Callable[[TableWriter], None]) -> None:
-    for table in tables:
-        act(table)
+def _write_command(writer: RunWriter, line: CommandLine) -> None:
+    """The line as it came first: whatever can be made of it."""
+    if writer.command is None or writer.command_text is None:
+        raise ValueError("start.json names no command log, so this run has none")
+    writer.command_text.append(line.arrived_s, line.raw)
+    for row in line.rows:
+        writer.command.append(
+            {
+                "t_s": row.t_s,
+                "cable": row.cable,
+                **row.values,
+                "log_s": row.log_s,
+                "arrived_s": line.arrived_s,
+            }
+        )

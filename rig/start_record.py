@@ -25,6 +25,7 @@ def start_record(
     seed: int,
     anchor: ClockAnchor,
     zeros: Zeros | None = None,
+    command_log: str | None = None,
 ) -> StartRecord:
     """The start record of a run.
 
@@ -44,6 +45,8 @@ def start_record(
         The run's time against wall time.
     zeros
         Host-side zeros of the cells.
+    command_log
+        Which log of the winch controller is recorded, and how it is read.
     """
     # From the wall time, so unique; and from what repeats a run, so repeated with it.
     name = f"{anchor.wall.isoformat()}\n{rig_text}\n{excitation}\n{seed}"
@@ -58,6 +61,7 @@ def start_record(
         nodes=tuple(_node(station, zeros) for station in stations),
         camera=_camera(machine.camera, rig),
         clock_anchor=anchor,
+        command_log=command_log,
         seed=seed if machine.simulated else None,
         versions=versions(),
     )

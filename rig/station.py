@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Amplifier, Rig
 from rig.amplifier import message
-from rig.amplifier.frame import FrameFormat, Reading
+from rig.amplifier.frame import Reading, ValueFormat
 from rig.amplifier.profile import Identity, Profile, profile_of
 from rig.amplifier.scaling import Scaling
 
@@ -37,7 +37,7 @@ class Station:
     identity: Identity
     profile: Profile
     settings: dict[str, str]
-    format: FrameFormat
+    format: ValueFormat
     scaling: Scaling
     period_s: float
 

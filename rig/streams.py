@@ -98,6 +98,8 @@ class BusStream:
                 self._serve(now_s)
         except LineLostError as fault:
             self._lost(fault)
+        if unused := self._bus.unused():
+            self._intake.unused(self._clock.monotonic_s(), unused)
         return True
 
     def _serve(self, now_s: float) -> None:

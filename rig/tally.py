@@ -18,6 +18,8 @@ class Tally:
         ``frame_dropped``, ``flagged`` (kept, but not to be used).
     frames
         Frames written.
+    commands
+        Rows of the command log.
     last_event
         The newest event, in words.
     """
@@ -26,6 +28,7 @@ class Tally:
     tension_n: dict[int, float] = field(default_factory=dict)
     lost: dict[str, int] = field(default_factory=dict)
     frames: int = 0
+    commands: int = 0
     last_event: str = ""
 
     def lose(self, what: str, count: int = 1) -> None:

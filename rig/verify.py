@@ -20,6 +20,8 @@ GAP_INTERVALS = 5.0
 MOST_LOST = 0.01
 MOST_DRIFT_PPM = 200.0
 CLOCK_STEP_S = 0.1
+MOST_LOG_RATE_ERROR = 0.1
+"""A command log that is tied by arrival, over a second or more, is no farther off than this."""
 
 
 class Verdict(StrEnum):
@@ -54,6 +56,7 @@ def verify(run: Run) -> list[Finding]:
         *_losses(run),
         *_overloads(run),
         *_frames(run),
+        *_command(run),
         *_clocks(run),
     ]
 
@@ -155,6 +158,36 @@ def _frames(run: Run) -> Iterator[Finding]:
     if dropped or repeated:
         words += f", {dropped} after a dropped one, {repeated} repeated"
     yield Finding(Verdict.WARN if dropped or repeated else Verdict.OK, "video", words)
+
+
+def _command(run: Run) -> Iterator[Finding]:
+    if run.command is None:
+        return
+    rows = run.command
+    times = np.unique(rows["t_s"].to_numpy(dtype=float))
+    if len(times) < 3:
+        yield Finding(Verdict.WARN, "command", f"{len(rows)} rows of the winch controller")
+        return
+    steps = np.diff(times)
+    words = (
+        f"{len(rows)} rows of {rows['cable'].nunique()} cables, "
+        f"{1.0 / float(np.median(steps)):.1f}/s, the longest gap {steps.max():.3f} s"
+    )
+    late_s = (rows["arrived_s"] - rows["t_s"]).dropna()
+    if len(late_s):
+        words += f", noticed up to {1e3 * float(late_s.max()):.0f} ms late"
+    lost = {} if run.stop is None else run.stop.lost
+    timed = rows[["log_s", "arrived_s"]].dropna().to_numpy(dtype=float)
+    if len(timed) > 2 and np.ptp(timed[:, 0]) > 0.0 and np.ptp(timed[:, 1]) > 1.0:
+        rate = float(np.ptp(timed[:, 0]) / np.ptp(timed[:, 1]))
+        if abs(rate - 1.0) > MOST_LOG_RATE_ERROR:
+            words += f"; its clock runs {rate:.4g} times as fast as the run's: is it in s?"
+            yield Finding(Verdict.FAIL, "command", words)
+            return
+    unread, gone = lost.get("command_line", 0), lost.get("command_log_lost", 0)
+    if unread or gone:
+        words += f", {unread} lines not understood, {gone} times gone"
+    yield Finding(Verdict.WARN if unread or gone else Verdict.OK, "command", words)
 
 
 def _clocks(run: Run) -> Iterator[Finding]:

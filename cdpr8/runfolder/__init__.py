@@ -11,7 +11,7 @@ from cdpr8.runfolder.tables import (
     TensionStatus,
 )
 from cdpr8.runfolder.video import VideoWriter, read_video
-from cdpr8.runfolder.write import RunWriter, TableWriter
+from cdpr8.runfolder.write import RawLog, RunWriter, TableWriter
 
 __all__ = [
     "BAD_TENSION",
@@ -21,6 +21,7 @@ __all__ = [
     "EventKind",
     "FrameFlag",
     "Node",
+    "RawLog",
     "Run",
     "RunWriter",
     "StartRecord",

@@ -4,6 +4,7 @@
 """
 
 import json
+from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
@@ -20,27 +21,32 @@ from cdpr8.runfolder.tables import (
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas" / f"v{SCHEMA_VERSION}"
 
-_MEANING = {
-    TensionStatus.NET_OVERFLOW: "net overflow; not used",
-    TensionStatus.GROSS_OVERFLOW: "gross overflow; not used",
-    TensionStatus.ADC_OVERFLOW: "input beyond the converter (about 2.5 mV/V); not used",
-    TensionStatus.STANDSTILL: "the amplifier sees standstill",
-    TensionStatus.LIMIT_1: "limit switch 1",
-    TensionStatus.LIMIT_2: "limit switch 2",
-    TensionStatus.TRIGGER: "trigger active",
-    TensionStatus.NOT_CONTIGUOUS: "the amplifier skipped values",
-    TensionStatus.HOST_OVERLOAD: "beyond the host's own limit for the force cell",
-    TensionStatus.STALE: "repeats an old value; not used",
-    TensionStatus.UNCONFIRMED: "a jump that a second reading did not confirm; not used",
-    FrameFlag.DROPPED_BEFORE: "a frame was lost before this one",
-    FrameFlag.REPEATED: "the same picture as the one before",
-    FrameFlag.BLACK: "nothing to be seen",
-    FrameFlag.NO_MARKER: "no marker found: the pose is empty",
-    FrameFlag.FEW_MARKERS: "some markers of the plate were not found",
-    FrameFlag.AMBIGUOUS: "both solutions of the planar pose fit about as well",
-    FrameFlag.BRANCH_FROM_PREVIOUS: "the solution nearest the frame before was taken",
-    FrameFlag.HIGH_REPROJECTION: "the plate fits this picture worse than the others",
+_MEANING: dict[type[IntFlag], dict[IntFlag, str]] = {
+    TensionStatus: {
+        TensionStatus.NET_OVERFLOW: "net overflow; not used",
+        TensionStatus.GROSS_OVERFLOW: "gross overflow; not used",
+        TensionStatus.ADC_OVERFLOW: "input beyond the converter (about 2.5 mV/V); not used",
+        TensionStatus.STANDSTILL: "the amplifier sees standstill",
+        TensionStatus.LIMIT_1: "limit switch 1",
+        TensionStatus.LIMIT_2: "limit switch 2",
+        TensionStatus.TRIGGER: "trigger active",
+        TensionStatus.NOT_CONTIGUOUS: "the amplifier skipped values",
+        TensionStatus.HOST_OVERLOAD: "beyond the host's own limit for the force cell",
+        TensionStatus.STALE: "repeats an old value; not used",
+        TensionStatus.UNCONFIRMED: "a jump that a second reading did not confirm; not used",
+    },
+    FrameFlag: {
+        FrameFlag.DROPPED_BEFORE: "a frame was lost before this one",
+        FrameFlag.REPEATED: "the same picture as the one before",
+        FrameFlag.BLACK: "nothing to be seen",
+        FrameFlag.NO_MARKER: "no marker found: the pose is empty",
+        FrameFlag.FEW_MARKERS: "some markers of the plate were not found",
+        FrameFlag.AMBIGUOUS: "both solutions of the planar pose fit about as well",
+        FrameFlag.BRANCH_FROM_PREVIOUS: "the solution nearest the frame before was taken",
+        FrameFlag.HIGH_REPROJECTION: "the plate fits this picture worse than the others",
+    },
 }
+"""By class, then by bit: bits of two classes are equal integers, and would share one dictionary."""
 
 
 def schemas() -> dict[str, dict[str, Any]]:
@@ -89,6 +95,8 @@ here reads; the JSON Schemas are in `cdpr8/runfolder/schemas/`.
 | `video.mkv` | the frames, grey and lossless (FFV1 in Matroska) |
 | `frames.csv` | the time of each frame |
 | `events.csv` | gaps, bad frames, lost amplifiers, start and end of the motion |
+| `command.csv` | what the winch controller commanded and measured, where it gives a log |
+| `command.txt` | that log as it arrived: each line after its time of arrival and a tab |
 | `stop.json` | how the run ended (`stop.schema.json`); absent: interrupted, and still readable |
 | `pose.csv` | written by `vision track` |
 | `results/` | written by `analysis` (into `./results/RUN` where the run is packaged or read-only) |
@@ -115,8 +123,9 @@ def _table_section(table: Table) -> str:
     return f"## {table.file}\n\n{table.meaning}\n\n{head}\n{rows}\n"
 
 
-def _bits(flags: type[TensionStatus] | type[FrameFlag]) -> str:
-    rows = "\n".join(f"| {bit.value} | `{bit.name}` | {_MEANING[bit]} |" for bit in flags)
+def _bits(flags: type[IntFlag]) -> str:
+    meaning = _MEANING[flags]
+    rows = "\n".join(f"| {bit.value} | `{bit.name}` | {meaning[bit]} |" for bit in flags)
     return f"| bit | name | meaning |\n|---|---|---|\n{rows}\n"
 
 

@@ -13,6 +13,7 @@ from cdpr8.rigfile.schema import Rig
 from cdpr8.runfolder.records import StartRecord, StopRecord
 from cdpr8.runfolder.tables import (
     BAD_TENSION,
+    COMMAND,
     EVENTS,
     FRAMES,
     POSE,
@@ -43,6 +44,8 @@ class Run:
         The same, None until `vision track` has run.
     notes
         What a user must know: torn lines, a missing stop record, and so on.
+    command
+        The winch controller's log as a data frame, None where the run has none.
     """
 
     folder: Path
@@ -54,6 +57,7 @@ class Run:
     events: "pd.DataFrame"
     pose: "pd.DataFrame | None"
     notes: tuple[str, ...]
+    command: "pd.DataFrame | None" = None
 
     @property
     def name(self) -> str:
@@ -108,9 +112,8 @@ def load_run(folder: Path) -> Run:
         tension=read_table(folder / TENSION.file, TENSION, notes),
         frames=_or_empty(folder, FRAMES, notes),
         events=_or_empty(folder, EVENTS, notes),
-        pose=read_table(folder / POSE.file, POSE, notes)
-        if (folder / POSE.file).is_file()
-        else None,
+        pose=_or_none(folder, POSE, notes),
+        command=_or_none(folder, COMMAND, notes),
         notes=tuple(notes),
     )
 
@@ -189,6 +192,11 @@ def _numbers(cells: "pd.Series[Any]", kind: str, path: Path, optional: bool) -> 
             remedy="restore the file; nothing is repaired silently",
         )
     return numbers.astype("int64") if kind == "integer" and not optional else numbers
+
+
+def _or_none(folder: Path, table: Table, notes: list[str]) -> "pd.DataFrame | None":
+    path = folder / table.file
+    return read_table(path, table, notes) if path.is_file() else None
 
 
 def _or_empty(folder: Path, table: Table, notes: list[str]) -> "pd.DataFrame":

@@ -1,9 +1,9 @@
 """start.json and stop.json: what is known before the first sample, and how the run ended."""
 
 from datetime import datetime
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer
 
 from cdpr8.rigfile.schema import Excitation, RegionOfInterest
 from cdpr8.runfolder.tables import SCHEMA_VERSION
@@ -73,8 +73,21 @@ class StartRecord(Record):
     import_map: str | None = Field(
         default=None, description="how another program's table was read, where one was"
     )
+    command_log: str | None = Field(
+        default=None,
+        description="which log of the winch controller was recorded, and how it was read; "
+        "absent where there is none",
+    )
     seed: int | None = None
     versions: dict[str, str] = Field(default_factory=dict)
+
+    @model_serializer(mode="wrap")
+    def _without_a_log_that_is_not(self, serialize: SerializerFunctionWrapHandler) -> Any:
+        """Runs without a command log stay what they were, to the byte."""
+        found = serialize(self)
+        if isinstance(found, dict) and found.get("command_log") is None:
+            found.pop("command_log", None)
+        return found
 
 
 class StopRecord(Record):

@@ -73,6 +73,8 @@ class EventKind(StrEnum):
     PAUSE = "pause"
     CLOCK_STEP = "clock_step"
     DISK_FULL = "disk_full"
+    STRAY_BYTES = "stray_bytes"
+    COMMAND_LOG = "command_log"
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,21 @@ EVENTS = Table(
     ),
 )
 
+COMMAND = Table(
+    "command.csv",
+    "The winch controller's own log, where there is one: any of the four quantities.",
+    (
+        Column("t_s", "number", "of the row, on the tension clock", "s", digits=6),
+        Column("cable", "integer", "cable number, 1 to 8"),
+        Column("commanded_m", "number", "unstretched length commanded", "m", True, 9),
+        Column("measured_m", "number", "unstretched length measured", "m", True, 9),
+        Column("commanded_deg", "number", "winch angle commanded", "deg", True, 6),
+        Column("measured_deg", "number", "winch angle measured (encoder)", "deg", True, 6),
+        Column("log_s", "number", "the log's own time, never altered", "s", True, 6),
+        Column("arrived_s", "number", "when the row had come, where it was recorded", "s", True, 6),
+    ),
+)
+
 POSE = Table(
     "pose.csv",
     "Written by `vision track`: pose of the centre of mass in O-XYZ, one row a frame.",
@@ -166,4 +183,4 @@ POSE = Table(
     ),
 )
 
-TABLES = (TENSION, FRAMES, EVENTS, POSE)
+TABLES = (TENSION, FRAMES, EVENTS, COMMAND, POSE)

@@ -1,5 +1,6 @@
 """video.mkv: lossless grey frames (FFV1 in Matroska), written as they come and read back."""
 
+import os
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -31,6 +32,8 @@ class VideoWriter:
     def __init__(self, path: Path, width: int, height: int, fps: float) -> None:
         import av
 
+        self._path = path
+
         # Reproducible bytes: no random segment id, no library version in the header. Clusters of
         # a quarter of a second, flushed as written, bound what a cut can take.
         self._container = av.open(
@@ -58,6 +61,14 @@ class VideoWriter:
         frame.pts, frame.time_base = self._last_tick, _TICK
         for packet in self._stream.encode(frame):
             self._container.mux(packet)
+
+    def sync(self) -> None:
+        """Hand all whole clusters to the disk: they have left this process as they were made."""
+        descriptor = os.open(self._path, os.O_RDWR)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
     def close(self) -> None:
         """Write what the encoder still holds and the index."""

@@ -4,7 +4,7 @@ import json
 import math
 import os
 from collections.abc import Mapping
-from io import TextIOWrapper
+from io import BufferedWriter, TextIOWrapper
 from pathlib import Path
 from typing import Self
 
@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from cdpr8.errors import DataError
 from cdpr8.runfolder.records import StartRecord, StopRecord
-from cdpr8.runfolder.tables import EVENTS, FRAMES, TENSION, EventKind, Table
+from cdpr8.runfolder.tables import COMMAND, EVENTS, FRAMES, TENSION, EventKind, Table
 from cdpr8.runfolder.video import Image, VideoWriter
 
 Cell = float | int | str | None
@@ -49,9 +49,42 @@ class TableWriter:
         self._file.flush()
 
     def close(self) -> None:
-        """Sync and close."""
-        self.sync()
-        self._file.close()
+        """Sync and close; a second time does nothing."""
+        if not self._file.closed:
+            self.sync()
+            self._file.close()
+
+
+class RawLog:
+    """Keeps the lines of another program as they came, each after its time of arrival and a tab.
+
+    Parameters
+    ----------
+    path
+        The file; must not exist.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file: BufferedWriter = path.open("xb")
+
+    def append(self, arrived_s: float, line: bytes) -> None:
+        """Keep one line, given without its end."""
+        self._file.write(f"{arrived_s:.6f}\t".encode("ascii") + line + b"\n")
+
+    def sync(self) -> None:
+        """Hand everything to the disk."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        self._file.flush()
+
+    def close(self) -> None:
+        """Sync and close; a second time does nothing."""
+        if not self._file.closed:
+            self.sync()
+            self._file.close()
 
 
 class RunWriter:
@@ -93,23 +126,33 @@ class RunWriter:
             for name, content in (beside_rig or {}).items():
                 (folder / name).write_bytes(content)
             _write_synced(folder / "rig.toml", rig_text)
-            _write_synced(folder / "start.json", _as_json(start))
             self.tension = TableWriter(folder, TENSION)
             self.frames = TableWriter(folder, FRAMES)
             self.events = TableWriter(folder, EVENTS)
+            self.command: TableWriter | None = None
+            self.command_text: RawLog | None = None
+            if start.command_log is not None:
+                self.command = TableWriter(folder, COMMAND)
+                if start.import_map is None:  # imported lines never arrived
+                    self.command_text = RawLog(folder / "command.txt")
+            self._video = _video(folder, start)
+            # What start.json makes a run of is there before it, whatever happens next.
+            for table in self.tables:
+                table.sync()
+            _write_synced(folder / "start.json", _as_json(start))
         except OSError as error:
             raise DataError(
                 f"the run folder cannot be written: {error.strerror}",
                 where=str(folder),
-                remedy="choose a folder you may write to",
+                remedy="choose a folder you may write to, on a disk with room",
             ) from None
-        self._video: VideoWriter | None = None
-        if start.camera is not None:
-            camera = start.camera
-            self._video = VideoWriter(
-                folder / "video.mkv", camera.width_px, camera.height_px, camera.fps
-            )
         self._frame_count = 0
+
+    @property
+    def tables(self) -> tuple["TableWriter | RawLog", ...]:
+        """Everything that lines are appended to."""
+        every = (self.tension, self.events, self.frames, self.command, self.command_text)
+        return tuple(table for table in every if table is not None)
 
     def __enter__(self) -> Self:
         return self
@@ -124,6 +167,12 @@ class RunWriter:
         self._video.write(image, t_s)
         self.frames.append({"frame": self._frame_count, "t_s": t_s, "flags": flags})
         self._frame_count += 1
+
+    def sync_frames(self) -> None:
+        """Hand the video and its times to the disk."""
+        if self._video is not None:
+            self._video.sync()
+        self.frames.sync()
 
     def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
         """Append one event; it is handed to the operating system at once."""
@@ -140,9 +189,15 @@ class RunWriter:
         if self._video is not None:
             self._video.close()
             self._video = None
-        for table in (self.tension, self.frames, self.events):
-            if not table._file.closed:
-                table.close()
+        for table in self.tables:
+            table.close()
+
+
+def _video(folder: Path, start: StartRecord) -> VideoWriter | None:
+    camera = start.camera
+    if camera is None:
+        return None
+    return VideoWriter(folder / "video.mkv", camera.width_px, camera.height_px, camera.fps)
 
 
 def _spell(value: Cell, digits: int | None) -> str:

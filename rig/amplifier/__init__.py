@@ -3,10 +3,11 @@
 Section numbers in docstrings are those of the protocol note (docs/amplifiers.md).
 """
 
-from rig.amplifier.frame import BadFrameError, FrameFormat, Reading
+from rig.amplifier.frame import BadFrameError, FrameFormat, Reading, ValueFormat
 from rig.amplifier.node import NodeClient, Settings
 from rig.amplifier.profile import Identity, Profile
 from rig.amplifier.scaling import Scaling
+from rig.amplifier.text_frame import TextFormat
 
 __all__ = [
     "BadFrameError",
@@ -17,4 +18,6 @@ __all__ = [
     "Reading",
     "Scaling",
     "Settings",
+    "TextFormat",
+    "ValueFormat",
 ]

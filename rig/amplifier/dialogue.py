@@ -57,11 +57,28 @@ class Dialogue:
 
     def __init__(self, transport: Transport) -> None:
         self.transport = transport
+        self._unused = bytearray()
 
     @property
     def clock(self) -> Clock:
         """The transport's clock."""
         return self.transport.clock
+
+    def keep(self, data: bytes) -> None:
+        """Note bytes that came and are no part of any answer."""
+        self._unused += data
+
+    def unused(self) -> bytes:
+        """Bytes noted since the last call: they are told, not thrown away unseen."""
+        data = bytes(self._unused)
+        self._unused.clear()
+        return data
+
+    def hush(self, quiet_s: float) -> bytes:
+        """Wait for silence of `quiet_s`; returns, and notes, what came."""
+        came = self.transport.drain(quiet_s)
+        self.keep(came)
+        return came
 
     def tell(self, *messages: bytes) -> None:
         """Send what is not answered."""
@@ -88,19 +105,20 @@ class Dialogue:
         for attempt in range(tries):
             if attempt:
                 self.settle()
-            self.transport.discard()
+            self.keep(self.transport.discard())
             self.transport.write(request)
             wait_s = (len(request) + LONGEST_ANSWER) * self.transport.line.char_s
             received = self._read_line(self.clock.monotonic_s() + wait_s + ANSWER_S + margin_s)
             if received.data.endswith(message.LINE_END) and not received.damaged:
                 return received.data
             raw = received.data
+            self.keep(raw)
         raise NoAnswerError(request, raw, self.transport.name)
 
     def settle(self) -> bytes:
         """Clear the nodes' input and wait until no late answer can come; returns what came."""
         self.transport.write(message.END)
-        return self.transport.drain(SETTLE_S)
+        return self.hush(SETTLE_S)
 
     def _read_line(self, deadline_s: float) -> Received:
         data = b""

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Protocol
 
 BUS_MODE = 16
 """Offset of COF: `Sxx;` itself answers with the newest value."""
@@ -16,6 +17,10 @@ CRLF = b"\r\n"
 
 FULL_SCALE_24 = 0x7FFFFF
 FULL_SCALE_16 = 0x7FFF
+
+DIGITS_PER_MV_PER_V = {4: 2_560_000, 2: 10_000}
+"""At NOV=0 and the factory curve, by data bytes: 2 mV/V are 5 120 000 or 20 000 digits (section 6).
+"""
 
 
 class Check(Enum):
@@ -59,6 +64,39 @@ class Reading:
     digits: int
     status: int = 0
     clamped: bool = False
+
+
+class ValueFormat(Protocol):
+    """How one measured value looks on the line: binary (`FrameFormat`) or text (`TextFormat`)."""
+
+    @property
+    def length(self) -> int:
+        """Bytes of one value on the line."""
+        ...
+
+    @property
+    def digits_per_mv_per_v(self) -> int:
+        """Digits for an input of 1 mV/V."""
+        ...
+
+    @property
+    def guarded(self) -> bool:
+        """Whether a checksum guards each value."""
+        ...
+
+    @property
+    def ends_in_crlf(self) -> bool:
+        """Whether CR LF ends each value, which marks where the next begins."""
+        ...
+
+    @property
+    def alignable(self) -> bool:
+        """Whether anything in the bytes tells where a value begins."""
+        ...
+
+    def decode(self, raw: bytes) -> Reading:
+        """The value in exactly one frame; raises `BadFrameError` where there is none."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -115,6 +153,26 @@ class FrameFormat:
     def length(self) -> int:
         """Bytes of one value on the line."""
         return self.data_bytes + (len(CRLF) if self.crlf else 0)
+
+    @property
+    def digits_per_mv_per_v(self) -> int:
+        """Digits for an input of 1 mV/V."""
+        return DIGITS_PER_MV_PER_V[self.data_bytes]
+
+    @property
+    def guarded(self) -> bool:
+        """Whether a checksum guards each value."""
+        return self.data_bytes == 4 and self.check is Check.CHECKSUM
+
+    @property
+    def ends_in_crlf(self) -> bool:
+        """Whether CR LF ends each value."""
+        return self.crlf
+
+    @property
+    def alignable(self) -> bool:
+        """Two bytes without CR LF are a value wherever one begins to read."""
+        return self.crlf or self.data_bytes == 4
 
     @property
     def full_scale(self) -> int:

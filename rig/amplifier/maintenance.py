@@ -4,14 +4,16 @@ Nothing here is done by a recording. What is changed is read back before it is s
 power cycle undoes what went wrong.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from cdpr8.errors import DeviceError
 from rig.amplifier import message
-from rig.amplifier.dialogue import Dialogue
+from rig.amplifier.dialogue import Dialogue, NoAnswerError
 from rig.amplifier.node import NodeClient
 from rig.amplifier.profile import Identity
 from rig.transport import Transport
+
+UNDONE = "nothing was saved, so a power cycle undoes it"
 
 SAVE = 1
 """TDD1: save the settings in the node's EEPROM."""
@@ -42,13 +44,27 @@ def readdress(dialogue: Dialogue, serial_number: str, address: int) -> Identity:
     dialogue.tell(message.END, message.select(message.BROADCAST), request)
     dialogue.transport.drain(0.1)
     node = NodeClient(dialogue, address)
-    identity = node.identify()
+    where = dialogue.transport.name
+    try:
+        identity = node.identify()
+    except NoAnswerError as fault:
+        if fault.came:
+            raise DeviceError(
+                f"address {address:02d} answers garbled: another amplifier has it too",
+                where=where,
+                remedy=f"choose a free address; {UNDONE}",
+            ) from None
+        raise DeviceError(
+            f"no amplifier with the serial number {serial_number!r} took address {address:02d}",
+            where=where,
+            remedy="check the serial number on its label; `rig scan` lists who answers",
+        ) from None
     if identity.serial_number != serial_number:
         raise DeviceError(
             f"address {address:02d} answers with serial number {identity.serial_number!r}",
             allowed=repr(serial_number),
-            where=dialogue.transport.name,
-            remedy="choose a free address; nothing was saved, so a power cycle undoes it",
+            where=where,
+            remedy=f"choose a free address; {UNDONE}",
         )
     node.write("TDD", SAVE)
     return identity
@@ -93,15 +109,41 @@ def change_baud(
     there = Dialogue(transport)
     there.settle()
     nodes = [NodeClient(there, address) for address in addresses]
-    for node in nodes:
-        node.identify()
-        if node.read("BDR") != f"{baud},{parity}":
-            raise DeviceError(
-                f"amplifier {node.address:02d} is not at {baud} baud",
-                where=transport.name,
-                remedy="switch the amplifiers off and on: nothing was saved",
-            )
-    for node in nodes:
-        node.identify()
-        node.write("TDD", SAVE)
+    try:
+        for node in nodes:
+            if not _is_at(node, baud, parity):
+                raise DeviceError(
+                    f"amplifier {node.address:02d} is not at {transport.line}",
+                    where=transport.name,
+                    remedy=f"switch all amplifiers off and on: {UNDONE}",
+                )
+        _save(nodes, transport)
+    except DeviceError:
+        transport.close()
+        raise
     return transport
+
+
+def _is_at(node: NodeClient, baud: int, parity: int) -> bool:
+    try:
+        node.identify()
+        return node.read("BDR") == f"{baud},{parity}"
+    except NoAnswerError:
+        return False
+
+
+def _save(nodes: Sequence[NodeClient], transport: Transport) -> None:
+    saved: list[str] = []
+    for node in nodes:
+        try:
+            node.identify()
+            node.write("TDD", SAVE)
+        except DeviceError as fault:
+            raise DeviceError(
+                f"amplifier {node.address:02d} did not save its new speed ({fault.what}); "
+                f"saved by: {', '.join(saved) or 'none'}",
+                where=transport.name,
+                remedy="leave the amplifiers on, set [bus] baud and parity in the rig file to the "
+                "new speed, and give the same command again: off and on would divide the bus",
+            ) from None
+        saved.append(f"{node.address:02d}")

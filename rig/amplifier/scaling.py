@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from cdpr8.rigfile.schema import Amplifier
-from rig.amplifier.frame import FrameFormat
-
-DIGITS_PER_MV_PER_V = {4: 2_560_000, 2: 10_000}
-"""At NOV=0 and the factory curve, by data bytes: 2 mV/V are 5 120 000 or 20 000 digits."""
+from rig.amplifier.frame import ValueFormat
 
 OVERLOAD_FACTOR = 1.2
 """Host's own limit in nominal forces: the electronics flag a 1 mV/V cell at 2.5 times only."""
+
+FINE_DIGITS = 100_000
+"""With so many digits in its range a live cell never gives one value for half a second."""
 
 
 @dataclass(frozen=True)
@@ -38,14 +38,14 @@ class Scaling:
 
     @classmethod
     def of(
-        cls, amplifier: Amplifier, format_: FrameFormat, zero_mv_per_v: float = 0.0
+        cls, amplifier: Amplifier, format_: ValueFormat, zero_mv_per_v: float = 0.0
     ) -> "Scaling":
         """The scaling of one cable's cell as the rig file has it."""
         return cls(
             amplifier.nominal_force_n,
             amplifier.sensitivity_mv_per_v,
             amplifier.sign,
-            DIGITS_PER_MV_PER_V[format_.data_bytes],
+            format_.digits_per_mv_per_v,
             zero_mv_per_v,
         )
 
@@ -58,6 +58,11 @@ class Scaling:
         """The digits, not rounded, that an amplifier gives for a tension: the inverse."""
         signal = self.sign * tension_n * self.sensitivity_mv_per_v / self.nominal_force_n
         return (signal + self.zero_mv_per_v) * self.digits_per_mv_per_v
+
+    @property
+    def fine(self) -> bool:
+        """Whether noise always turns the last digit: not where 2 bytes hold the value."""
+        return self.digits_per_mv_per_v * self.sensitivity_mv_per_v >= FINE_DIGITS
 
     def overloaded(self, tension_n: float) -> bool:
         """Whether the cell is loaded beyond what the host allows, in either direction."""

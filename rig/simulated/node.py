@@ -8,6 +8,7 @@ from enum import Enum
 from rig.amplifier.frame import (
     BINARY_BASES,
     BUS_MODE,
+    DIGITS_PER_MV_PER_V,
     POWER_ON_STREAM,
     WITHOUT_CRLF,
     FrameFormat,
@@ -15,7 +16,8 @@ from rig.amplifier.frame import (
 from rig.amplifier.message import ACCEPTED, BROADCAST, REFUSED
 from rig.amplifier.node import PASSWORD
 from rig.amplifier.profile import FIT, Profile
-from rig.amplifier.scaling import DIGITS_PER_MV_PER_V
+from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V as TEXT_DIGITS_PER_MV_PER_V
+from rig.amplifier.text_frame import TextFormat, formats_of
 from rig.simulated.registers import REGISTERS, factory_settings
 from rig.simulated.signal import NodeSignal
 
@@ -28,9 +30,8 @@ TURNAROUND_S = 20e-6
 RESTART_S = 2.0
 """How long a node is deaf after RES."""
 
-ASCII_PER_DIGIT = 500_000 / DIGITS_PER_MV_PER_V[4]
-ASCII_LIMIT = 1_638_399
-ASCII_SEPARATORS_FROM = 128
+TEXT_PER_DIGIT = TEXT_DIGITS_PER_MV_PER_V / DIGITS_PER_MV_PER_V[4]
+TEXT_SEPARATORS_FROM = 128
 
 _COMMAND = re.compile(r'([A-Z]{3})(\?)?([^"]*(?:"[^"]*")?)$')
 
@@ -69,6 +70,8 @@ class SimulatedNode:
         Its dialect and what it says in `IDN?`.
     crlf_in_bus_mode
         Whether binary values in bus mode carry CR LF: real ones differ.
+    crlf_in_stream
+        The same under `MSV?0;`.
     """
 
     def __init__(
@@ -82,6 +85,7 @@ class SimulatedNode:
         profile: Profile = FIT,
         type_name: str = "FIT/5",
         crlf_in_bus_mode: bool = True,
+        crlf_in_stream: bool = True,
     ) -> None:
         self.signal = signal
         self.profile = profile
@@ -89,6 +93,7 @@ class SimulatedNode:
         self.powered = True
         self._type_name = type_name
         self._crlf_in_bus_mode = crlf_in_bus_mode
+        self._crlf_in_stream = crlf_in_stream
         self._eeprom = factory_settings() | {"ADR": address, "BAUD": baud, "PARITY": parity}
         self.power_on(0.0)
 
@@ -157,8 +162,12 @@ class SimulatedNode:
         cof = settings["COF"]
         base = cof % BUS_MODE
         if base not in BINARY_BASES:
-            return self._ascii(digits, status, base)
-        crlf = not cof & WITHOUT_CRLF and (self._crlf_in_bus_mode or not cof & BUS_MODE)
+            return self._text(digits, status)
+        if cof & BUS_MODE:
+            crlf = self._crlf_in_bus_mode
+        else:
+            crlf = self._crlf_in_stream or not self.measuring
+        crlf = crlf and not cof & WITHOUT_CRLF
         format_ = FrameFormat.of_output_format(cof, settings["CSM"], crlf)
         if format_.data_bytes == 2 and settings["NOV"] == 0:
             digits >>= 8
@@ -286,16 +295,12 @@ class SimulatedNode:
         self._errors |= error
         return Answer(REFUSED, COMMAND_S)
 
-    def _ascii(self, digits: int, status: int, base: int) -> bytes:
+    def _text(self, digits: int, status: int) -> bytes:
         """COF 1, 3, 9 and 11: value, address and status as text (section 5)."""
-        value = max(-ASCII_LIMIT, min(ASCII_LIMIT, round(digits * ASCII_PER_DIGIT)))
-        words = [f"{'-' if value < 0 else ' '}{abs(value):07d}"]
-        if base in (1, 5, 9):
-            words.append(f"{self.settings['ADR']:02d}")
-        if base in (9, 11):
-            words.append(f"{status:03d}")
-        separator = chr(self.settings["TEX"] % ASCII_SEPARATORS_FROM)
-        return separator.join(words).encode() + b"\r\n"
+        (format_,) = formats_of(self.settings["COF"], 0, self.settings["ADR"])
+        assert isinstance(format_, TextFormat)
+        frame = format_.encode(round(digits * TEXT_PER_DIGIT), status)
+        return frame.replace(b",", bytes([self.settings["TEX"] % TEXT_SEPARATORS_FROM]))
 
 
 _METHODS = frozenset({"STP", "RES", "MSV", "IDN", "BDR", "SPW", "TDD", "TAR", "ESR"})

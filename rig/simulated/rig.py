@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,24 +17,13 @@ from rig.machine import Machine
 from rig.simulated.bus import SimulatedBus
 from rig.simulated.exposures import Exposer, ExposureSequence
 from rig.simulated.faults import LineFaults
+from rig.simulated.late import LatePlatform, Platform
 from rig.simulated.node import SimulatedNode
 from rig.simulated.signal import Array, Crystal, NodeSignal
 from rig.transport import MemoryTransport, Transport, TwoWire
 
 CRYSTAL_PPM = 50.0
 """Crystals of the nodes are off by up to this much, either way."""
-
-
-class Platform(Protocol):
-    """What moves: `rig.simulated.plant.PlatformTrajectory`, or a stand-in in tests."""
-
-    def pose_at(self, t_s: Array) -> Array:
-        """Poses at times of the run, shape (n, 6), m and rad."""
-        ...
-
-    def tension_at(self, cable: int, t_s: Array) -> Array:
-        """Tension of one cable, 1 to 8, at times of the run, shape (n,), N."""
-        ...
 
 
 def open_rig(
@@ -71,10 +59,20 @@ def open_rig(
     Machine
         For `rig.recorder.record`.
     """
+    ready: Callable[[], object] = _at_once
     if platform is None:
-        from rig.simulated.plant import simulate_platform
 
-        platform = simulate_platform(rig, excitation, friction_n)
+        def simulate() -> Platform:
+            from rig.simulated.plant import simulate_platform
+
+            return simulate_platform(rig, excitation, friction_n)
+
+        if isinstance(clock, VirtualClock):
+            platform = simulate()
+        else:
+            rest_n = [float(cable.pretension_n.value) for cable in rig.cable]
+            platform = late = LatePlatform(simulate, rest_n)
+            ready = late.wait
     exposer: Exposer | None = None
     camera = rig.camera
     if camera is not None and rig.plate is not None and camera.source == "simulated":
@@ -87,7 +85,13 @@ def open_rig(
             np.random.default_rng(np.random.SeedSequence([seed, _CAMERA_STREAM])),
             centre_of_mass_m=rig.platform.centre_of_mass_m.value,
         )
-    return assemble(rig, platform, exposer, clock, seed=seed)
+    machine = assemble(rig, platform, exposer, clock, seed=seed)
+    machine.ready = ready
+    return machine
+
+
+def _at_once() -> None:
+    """Nothing to wait for."""
 
 
 def assemble(

@@ -7,13 +7,16 @@ where exactly one of them passes and all others have failed.
 
 from dataclasses import dataclass
 
-from rig.amplifier.frame import BadFrameError, FrameFormat, Reading
+from rig.amplifier.frame import CRLF, BadFrameError, Check, FrameFormat, Reading, ValueFormat
 
 VALUES_TO_LOCK = 8
 """Values in a row that one phase must pass."""
 
 LONGEST_SEARCH = 64
 """Values' worth of bytes after which a search has failed: the stream must be started anew."""
+
+UNUSUAL_STATUS = 0xF0
+"""Status bits that are zero on an amplifier with no limit switch, trigger or overrun."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,28 +44,50 @@ class FrameLock:
     Parameters
     ----------
     format_
-        Of the values; with a checksum.
+        Of the values. Without CR LF and without a checksum the status byte alone tells where a
+        value begins: its upper half must be zero (no limit switch, no trigger, nothing skipped).
     jump_digits
         Where values come without CR LF, a change by more than this is taken for a lost byte until
         the phases have been scored again; None where CR LF guards each value.
     """
 
-    def __init__(self, format_: FrameFormat, jump_digits: float | None = None) -> None:
+    def __init__(self, format_: ValueFormat, jump_digits: float | None = None) -> None:
         self._format = format_
         self._jump_digits = jump_digits
-        self._data = b""
+        self._data = self._before = b""
         self._start = 0
         self._last: int | None = None
         self._follows = False
+        self._damaged: list[tuple[int, int]] = []
+        self._by_status = (
+            isinstance(format_, FrameFormat) and format_.check is Check.STATUS and not format_.crlf
+        )
         self.locked = False
+
+    @property
+    def unproven(self) -> bytes:
+        """Bytes that have come and are neither values nor faults yet."""
+        return self._data
 
     @property
     def failed(self) -> bool:
         """Whether a search went on for too long: more than one phase fits, or none."""
         return not self.locked and len(self._data) >= LONGEST_SEARCH * self._format.length
 
-    def feed(self, data: bytes) -> tuple[list[Framed], list[BadFrameError]]:
-        """Values that are complete and proven now, and bytes that are none."""
+    def feed(self, data: bytes, damaged: bool = False) -> tuple[list[Framed], list[BadFrameError]]:
+        """Values that are complete and proven now, and bytes that are none.
+
+        Parameters
+        ----------
+        data
+            What came.
+        damaged
+            Whether the receiver saw a parity error in it: then none of it is believed that no
+            checksum guards.
+        """
+        if damaged and not self._format.guarded:
+            end = self._start + len(self._data)
+            self._damaged.append((end, end + len(data)))
         self._data += data
         values: list[Framed] = []
         faults: list[BadFrameError] = []
@@ -78,7 +103,7 @@ class FrameLock:
         while len(self._data) >= length:
             raw = self._data[:length]
             try:
-                reading = self._format.decode(raw)
+                reading = self._decode(raw)
             except BadFrameError as fault:
                 faults.append(fault)
                 self._drop(1)
@@ -87,10 +112,27 @@ class FrameLock:
             if self._jumped(reading):
                 self.locked, self._last = False, None
                 return True
+            if self._in_damaged(length):
+                faults.append(BadFrameError("parity error", raw))
+                self._drop(length)
+                self._follows = False
+                continue
             self._drop(length)
             values.append(Framed(reading, self._start, self._follows))
             self._last, self._follows = reading.digits, True
         return False
+
+    def _decode(self, raw: bytes) -> Reading:
+        reading = self._format.decode(raw)
+        if self._by_status and reading.status & UNUSUAL_STATUS:
+            raise BadFrameError(f"status byte is {reading.status:02X}", raw)
+        return reading
+
+    def _in_damaged(self, length: int) -> bool:
+        """Whether one of the next bytes came with a parity error."""
+        while self._damaged and self._damaged[0][1] <= self._start:
+            del self._damaged[0]
+        return bool(self._damaged) and self._damaged[0][0] < self._start + length
 
     def _jumped(self, reading: Reading) -> bool:
         if self._jump_digits is None or self._last is None:
@@ -110,12 +152,25 @@ class FrameLock:
         first, _ = runs[phase]
         if first is None:
             return False
+        if not self._clean(first):
+            first += length
         if first:
             faults.append(BadFrameError("no value", self._data[:first]))
             self._drop(first)
             self._follows = False
         self.locked = True
         return True
+
+    def _clean(self, first: int) -> bool:
+        """Whether a value can begin there whole.
+
+        A byte that came between leaves a value whose later bytes stand where they should: without
+        a checksum the first value after a fault is believed only behind a CR LF, or behind silence.
+        """
+        if self._format.guarded or self._start + first == 0:
+            return True
+        before = self._before + self._data[:first]
+        return self._format.ends_in_crlf and before.endswith(CRLF)
 
     def _run(self, phase: int) -> tuple[int | None, bool]:
         """Where the values of a phase begin that pass up to the newest byte; and did any fail."""
@@ -124,7 +179,7 @@ class FrameLock:
         count, failed = 0, False
         for at in range(phase, len(self._data) - length + 1, length):
             try:
-                self._format.decode(self._data[at : at + length])
+                self._decode(self._data[at : at + length])
             except BadFrameError:
                 first, count, failed = None, 0, True
             else:
@@ -133,5 +188,6 @@ class FrameLock:
         return (first if count >= VALUES_TO_LOCK else None), failed
 
     def _drop(self, count: int) -> None:
+        self._before = (self._before + self._data[:count])[-len(CRLF) :]
         self._data = self._data[count:]
         self._start += count

@@ -8,16 +8,11 @@ from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Amplifier, Rig
 from rig.amplifier import message
 from rig.amplifier.dialogue import Dialogue
-from rig.amplifier.frame import (
-    BUS_MODE,
-    WITHOUT_CRLF,
-    BadFrameError,
-    Check,
-    FrameFormat,
-)
+from rig.amplifier.frame import BUS_MODE, CRLF, WITHOUT_CRLF, BadFrameError, ValueFormat
 from rig.amplifier.node import NodeClient, Settings
 from rig.amplifier.profile import profile_of
 from rig.amplifier.scaling import Scaling
+from rig.amplifier.text_frame import formats_of
 from rig.assignment import amplifiers
 from rig.confirmation import JUMP_OF_NOMINAL
 from rig.station import Station, Value, check_identity
@@ -33,6 +28,9 @@ PROBED = 16
 
 LONGEST_GAP_S = 1.0
 """A longer gap starts the node's clock anew."""
+
+LATE_S = 0.01
+"""How late bytes may be noticed: ports are looked at every 7 ms at least."""
 
 JUST = 0.05
 """Of a period: how much late a value may be and still count as on time."""
@@ -69,8 +67,9 @@ class StreamPort:
             cof=base + (rig.bus.output_format & WITHOUT_CRLF),
             icr=rig.bus.output_rate,
             asf=rig.bus.filter,
-            csm=1,
+            csm=1 if rig.bus.checksum or rig.bus.parity == "none" else 0,
         )
+        self._lock: FrameLock | None = None
         self.station = self._set_up(zero_mv_per_v)
 
     def start(self) -> None:
@@ -80,17 +79,24 @@ class StreamPort:
         jump = JUMP_OF_NOMINAL * abs(
             station.scaling.digits(station.scaling.nominal_force_n) - station.scaling.digits(0.0)
         )
-        self._lock = FrameLock(station.format, None if station.format.crlf else jump)
+        self._lock = FrameLock(station.format, None if station.format.ends_in_crlf else jump)
         self._clock = NodeClock(station.period_s)
         self._number = -1
-        self._received = 0
+        self._received = self._last_end = 0
         self.heard_s = self.transport.clock.monotonic_s()
         self._dialogue.tell(START)
 
     def stop(self) -> None:
         """End the stream and wait for silence."""
+        if self._lock is not None:
+            self._dialogue.keep(self._lock.unproven)
+            self._lock = None
         self._dialogue.tell(STOP)
-        self.transport.drain(SILENCE_S)
+        self._dialogue.hush(SILENCE_S)
+
+    def unused(self) -> bytes:
+        """Bytes that came since the last call and became neither a value nor a told bad frame."""
+        return self._dialogue.unused()
 
     def resume(self) -> bool:
         """Set up again after silence or a lost line; False where it is not what it was."""
@@ -109,17 +115,19 @@ class StreamPort:
     @property
     def failed(self) -> bool:
         """Whether the alignment is unknown and the stream must be started anew."""
-        return self._lock.failed
+        return self._lock is not None and self._lock.failed
 
     def poll(self) -> tuple[list[Value], list[BadFrameError], int]:
         """Values that have come, bytes that are none, and how many values are missing."""
-        data = self.transport.discard()
-        if not data:
+        received = self.transport.take()
+        data = received.data
+        if not data or self._lock is None:
+            self._dialogue.keep(data)
             return [], [], 0
         now_s = self.transport.clock.monotonic_s()
         self.heard_s = now_s
         self._received += len(data)
-        framed, faults = self._lock.feed(data)
+        framed, faults = self._lock.feed(data, received.damaged)
         char_s = self.transport.line.char_s
         arrived = [now_s - (self._received - each.end) * char_s for each in framed]
         missing = 0
@@ -128,6 +136,7 @@ class StreamPort:
             if not each.follows and self._clock.known:
                 missing += self._skip(framed, arrived, place)
             self._number += 1
+            self._last_end = each.end
             self._clock.add(self._number, arrived_s)
             values.append((each, self._number, arrived_s))
         return [self._value(*value) for value in values], faults, missing
@@ -143,6 +152,13 @@ class StreamPort:
             late_s = arrived_s - self._clock.arrival_s(self._number)
             steps.append(late_s / self._clock.period_s - further)
         missing = max(0, math.floor(min(steps) + JUST) - 1)
+        # Bytes arrive late, never early: their time tells at most how many are missing. Where bytes
+        # came between, their number tells it better, unless far more time went by.
+        length = self.station.format.length
+        between = framed[place].end - length - self._last_end
+        by_bytes = max(1, round(between / length))
+        if between > 0 and missing - by_bytes <= LATE_S / self._clock.period_s:
+            missing = min(missing, by_bytes)
         if missing * self._clock.period_s > LONGEST_GAP_S:
             self._clock = NodeClock(self.station.period_s)
             self._number = -1
@@ -175,35 +191,49 @@ class StreamPort:
             period_s=period_s,
         )
 
-    def _probe(self, period_s: float) -> FrameFormat:
+    def _probe(self, period_s: float) -> ValueFormat:
         """With CR LF or without: asked of the stream itself (section 5, "ambiguities")."""
-        formats = [
-            FrameFormat.of_output_format(self._settings.cof, 1, crlf) for crlf in (True, False)
-        ]
-        if formats[0].check is not Check.CHECKSUM:
-            raise DeviceError(
-                f"[bus] output_format = {self._rig.bus.output_format} carries no checksum",
-                allowed="24, 28 (and these + 32) where streaming = true",
-                where=self._rig.name,
-            )
-        clock, line = self.transport.clock, self.transport.line
+        amplifier, clock, line = self._amplifier, self.transport.clock, self.transport.line
+        formats = formats_of(self._settings.cof, self._settings.csm, amplifier.address)
+        self._check_speed(min(each.length for each in formats), period_s)
         self._dialogue.tell(START)
         count = PROBED * formats[0].length
         wait_s = count * line.char_s + 2 * PROBED * period_s
         raw = self.transport.read(count, clock.monotonic_s() + wait_s).data
         self.stop()
+        # CR LF at the end of every value is no chance; without it nearly everything fits.
         fitting = [each for each in formats if _all_fit(each, raw)]
-        if len(fitting) != 1:
+        if not fitting or not raw.strip(CRLF):
             raise DeviceError(
-                f"values fit {len(fitting)} formats: {raw[:12].hex(' ').upper() or 'nothing came'}",
-                allowed="values of 4 bytes with a checksum, all with CR LF or all without",
+                f"values fit no format of COF {self._settings.cof}: "
+                f"{raw[:17].hex(' ').upper() or 'nothing came'}",
+                allowed=" or ".join(f"{each.length} bytes a value" for each in formats),
                 where=self.transport.name,
                 remedy="check the wiring, and that the line is fast enough for the output rate",
             )
+        if not fitting[0].alignable:
+            raise DeviceError(
+                "values of 2 bytes come without CR LF: nothing tells where one begins",
+                allowed="2 bytes with CR LF, 4 bytes, or text",
+                where=self.transport.name,
+                remedy="set [bus] output_format = 8 in the rig file (4 bytes with a checksum)",
+            )
+        self._check_speed(fitting[0].length, period_s)
         return fitting[0]
 
+    def _check_speed(self, length: int, period_s: float) -> None:
+        line = self.transport.line
+        needs_baud = length * line.bits_per_char / period_s
+        if needs_baud > line.baud:
+            raise DeviceError(
+                f"{1.0 / period_s:g} values of {length} bytes a second do not go through {line}",
+                allowed=f"at least {needs_baud:.0f} baud, or a slower output rate",
+                where=self.transport.name,
+                remedy="raise [bus] output_rate or baud, or choose a shorter output_format",
+            )
 
-def _all_fit(format_: FrameFormat, raw: bytes) -> bool:
+
+def _all_fit(format_: ValueFormat, raw: bytes) -> bool:
     length = format_.length
     whole = len(raw) // length
     if whole < PROBED // 2:
@@ -226,6 +256,7 @@ def open_ports(
     )
     for port in found:
         port.start()
+        port.unused()  # of the setting up, not of the run
     return found
 
 

@@ -5,8 +5,10 @@ from collections.abc import Sequence
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
 from cdpr8.runfolder import EventKind
+from rig.confirmation import Confirmation
 from rig.intake import Intake
 from rig.quarantine import Quarantine
+from rig.station import Value
 from rig.streaming.port import StreamPort
 from rig.streams import REOPEN_EVERY_S, Span
 from rig.transport import LineLostError
@@ -47,6 +49,7 @@ class StreamingStream:
         self._span = span
         self._clock = clock
         self._quarantine = Quarantine()
+        self._confirmation = Confirmation()
         self._line_lost: dict[int, float] = {}
         self._looks = 0
 
@@ -58,10 +61,15 @@ class StreamingStream:
     def step(self) -> bool:
         """Look at every port once, then wait a little."""
         now_s = self._clock.monotonic_s()
-        if now_s >= self._span.end_s:
-            return False
+        over = now_s >= self._span.end_s
         for port in self._ports:
             self._serve(port)
+            if unused := port.unused():
+                self._intake.unused(now_s, unused, port.station.cable)
+        if over:  # what came up to the end has been taken
+            for port in self._ports:
+                self._forget(port)
+            return False
         self._looks += 1
         least_s, most_s = LOOK_EVERY_S
         wait_s = least_s + (most_s - least_s) * (self._looks * GOLDEN % 1.0)
@@ -93,13 +101,28 @@ class StreamingStream:
             self._intake.event(now_s, EventKind.GAP, f"{missing} values missing", cable)
         for value in values:
             if self._span.origin_s <= value.sampled_s <= self._span.end_s:
-                self._intake.value(port.station, value)
+                self._judge(port, value)
         if port.failed:
+            self._forget(port)
             self._intake.event(now_s, EventKind.GAP, "alignment unknown: started anew", cable)
             self._intake.lose("restart")
             port.start()
         elif now_s - port.heard_s > SILENT_S:
             self._lose(port, f"nothing came for {SILENT_S} s", None)
+
+    def _judge(self, port: StreamPort, value: Value) -> None:
+        """Without a checksum, a value that jumps waits for the next one to confirm it."""
+        station = port.station
+        if station.format.guarded:
+            self._intake.value(station, value)
+            return
+        for settled, believed in self._confirmation.judge(station.cable, station.scaling, value):
+            self._intake.value(station, settled, believed)
+
+    def _forget(self, port: StreamPort) -> None:
+        """Record a doubted value as what it is: not confirmed."""
+        for value, believed in self._confirmation.forget(port.station.cable):
+            self._intake.value(port.station, value, believed)
 
     def _lose(self, port: StreamPort, why: str, retry_after_s: float | None) -> None:
         cable, now_s = port.station.cable, self._clock.monotonic_s()
@@ -108,6 +131,7 @@ class StreamingStream:
             self._intake.event(
                 now_s, EventKind.NODE_LOST, f"amplifier {port.station.address:02d}: {why}", cable
             )
+        self._forget(port)
         self._quarantine.lose(cable, now_s, retry_after_s)
 
     def _retry(self, port: StreamPort) -> None:

@@ -84,8 +84,12 @@ class Transport(Protocol):
         """Exactly `count` bytes, or what has come by `deadline_s`."""
         ...
 
+    def take(self) -> Received:
+        """What has come and was not read; does not wait."""
+        ...
+
     def discard(self) -> bytes:
-        """Throw away, and return, what has come and was not read; does not wait."""
+        """The bytes of `take`."""
         ...
 
     def drain(self, quiet_s: float) -> bytes:

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from cdpr8.clock import Clock
-from rig.transport.line import MAX_DRAIN_S, LineSettings, Received
+from rig.transport.end import LineEnd
+from rig.transport.line import LineSettings, Received
 
 AHEAD_S = 0.02
 """The far end is asked for what it sends within this time, then for more."""
@@ -71,7 +72,7 @@ class FarEnd(Protocol):
         ...
 
 
-class MemoryTransport:
+class MemoryTransport(LineEnd):
     """One end of a line in memory.
 
     Parameters
@@ -87,29 +88,12 @@ class MemoryTransport:
     def __init__(
         self, far_end: FarEnd, line: LineSettings, clock: Clock, name: str = "memory"
     ) -> None:
+        super().__init__(line, clock, name)
         self._far_end = far_end
-        self._line = line
-        self._clock = clock
-        self._name = name
-
-    @property
-    def line(self) -> LineSettings:
-        """Speed and framing."""
-        return self._line
-
-    @property
-    def clock(self) -> Clock:
-        """The clock given at the start."""
-        return self._clock
-
-    @property
-    def name(self) -> str:
-        """What a user calls this line."""
-        return self._name
 
     def write(self, data: bytes) -> None:
         """Start to send `data` now."""
-        self._far_end.hear(data, self._clock.monotonic_s())
+        self._far_end.hear(data, self.clock.monotonic_s())
 
     def read(self, count: int, deadline_s: float) -> Received:
         """Exactly `count` bytes, or what has come by `deadline_s`."""
@@ -117,7 +101,7 @@ class MemoryTransport:
         damaged = False
         last_s = deadline_s
         # In steps: a node that streams must not be asked for what a later command will stop.
-        until_s = min(deadline_s, self._clock.monotonic_s() + AHEAD_S)
+        until_s = min(deadline_s, self.clock.monotonic_s() + AHEAD_S)
         pending = self._far_end.speak(until_s)
         while len(data) < count:
             chunk = pending[0] if pending else None
@@ -135,32 +119,24 @@ class MemoryTransport:
             data += chunk.data
             damaged |= chunk.damaged
             last_s = chunk.last_s
-        self._clock.sleep_until(last_s if len(data) == count else deadline_s)
+        self.clock.sleep_until(last_s if len(data) == count else deadline_s)
         return Received(data, last_s, damaged)
 
-    def discard(self) -> bytes:
-        """Throw away, and return, what has come and was not read."""
-        now_s = self._clock.monotonic_s()
+    def take(self) -> Received:
+        """What has come and was not read."""
+        now_s = last_s = self.clock.monotonic_s()
         pending = self._far_end.speak(now_s)
         data = b""
+        damaged = False
         while pending and (ready := pending[0].arrived(now_s)):
             if ready < len(pending[0].data):
                 chunk, pending[0] = pending[0].split(ready)
             else:
                 chunk = pending.popleft()
             data += chunk.data
-        return data
-
-    def drain(self, quiet_s: float) -> bytes:
-        """Throw away, and return, what comes until nothing has come for `quiet_s`."""
-        data = self.discard()
-        end_s = self._clock.monotonic_s() + MAX_DRAIN_S
-        while self._clock.monotonic_s() < end_s:
-            received = self.read(1, self._clock.monotonic_s() + quiet_s)
-            if not received.data:
-                break
-            data += received.data + self.discard()
-        return data
+            damaged |= chunk.damaged
+            last_s = chunk.last_s
+        return Received(data, last_s, damaged)
 
     def reopen(self) -> None:
         """Nothing to open: memory is always there."""

@@ -10,12 +10,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from cdpr8.clock import Clock, VirtualClock
+from cdpr8.clock import VirtualClock
 from cdpr8.errors import DataError
+from rig.transport.end import Around, LineEnd
 from rig.transport.line import LineSettings, Received, Transport
 
 
-class TracingTransport:
+class TracingTransport(Around):
     """Passes everything on and writes it down.
 
     Parameters
@@ -27,25 +28,10 @@ class TracingTransport:
     """
 
     def __init__(self, inner: Transport, path: Path) -> None:
-        self._inner = inner
+        super().__init__(inner)
         self._file = path.open("a", encoding="utf-8")
         line = inner.line
         self._note("line", baud=line.baud, parity=line.parity, name=inner.name)
-
-    @property
-    def line(self) -> LineSettings:
-        """Speed and framing."""
-        return self._inner.line
-
-    @property
-    def clock(self) -> Clock:
-        """The inner line's clock."""
-        return self._inner.clock
-
-    @property
-    def name(self) -> str:
-        """What a user calls this line."""
-        return self._inner.name
 
     def write(self, data: bytes) -> None:
         """Send bytes."""
@@ -54,14 +40,11 @@ class TracingTransport:
 
     def read(self, count: int, deadline_s: float) -> Received:
         """Exactly `count` bytes, or what has come by `deadline_s`."""
-        received = self._inner.read(count, deadline_s)
-        self._note(
-            "read",
-            data=received.data.hex(),
-            last_s=received.last_byte_s,
-            damaged=received.damaged,
-        )
-        return received
+        return self._noted("read", self._inner.read(count, deadline_s))
+
+    def take(self) -> Received:
+        """What has come."""
+        return self._noted("take", self._inner.take())
 
     def discard(self) -> bytes:
         """Throw away, and return, what has come."""
@@ -75,21 +58,26 @@ class TracingTransport:
         self._note("drain", data=data.hex())
         return data
 
-    def reopen(self) -> None:
-        """Open the inner line again."""
-        self._inner.reopen()
-
     def close(self) -> None:
         """Close the line and the trace."""
         self._inner.close()
         self._file.close()
+
+    def _noted(self, call: str, received: Received) -> Received:
+        self._note(
+            call,
+            data=received.data.hex(),
+            last_s=received.last_byte_s,
+            damaged=received.damaged,
+        )
+        return received
 
     def _note(self, call: str, **what: Any) -> None:
         now_s = self._inner.clock.monotonic_s()
         self._file.write(json.dumps({"call": call, "t_s": now_s, **what}) + "\n")
 
 
-class RecordedTransport:
+class RecordedTransport(LineEnd):
     """Plays a trace back; the caller must do what was done then.
 
     Parameters
@@ -102,26 +90,11 @@ class RecordedTransport:
 
     def __init__(self, lines: Iterable[str], clock: VirtualClock) -> None:
         self._calls = deque(json.loads(line) for line in lines if line.endswith("\n"))
-        self._clock = clock
+        self._time = clock
         head = self._calls.popleft()
-        self._line = LineSettings(head["baud"], head["parity"])
-        self._name = f"recorded {head['name']}"
+        line = LineSettings(head["baud"], head["parity"])
+        super().__init__(line, clock, f"recorded {head['name']}")
         clock.sleep_until(head["t_s"])
-
-    @property
-    def line(self) -> LineSettings:
-        """As it was recorded."""
-        return self._line
-
-    @property
-    def clock(self) -> Clock:
-        """The clock given at the start."""
-        return self._clock
-
-    @property
-    def name(self) -> str:
-        """What a user calls this line."""
-        return self._name
 
     @property
     def over(self) -> bool:
@@ -143,8 +116,11 @@ class RecordedTransport:
     def read(self, count: int, deadline_s: float) -> Received:
         """What came then, at its time."""
         del count, deadline_s
-        was = self._next("read")
-        return Received(bytes.fromhex(was["data"]), was["last_s"], was["damaged"])
+        return self._received("read")
+
+    def take(self) -> Received:
+        """What had come then."""
+        return self._received("take")
 
     def discard(self) -> bytes:
         """What was thrown away then."""
@@ -161,11 +137,15 @@ class RecordedTransport:
     def close(self) -> None:
         """Nothing to give back."""
 
+    def _received(self, call: str) -> Received:
+        was = self._next(call)
+        return Received(bytes.fromhex(was["data"]), was["last_s"], was["damaged"])
+
     def _next(self, call: str) -> dict[str, Any]:
         if not self._calls:
-            raise DataError(f"the trace is over, and a {call} was asked for", where=self._name)
+            raise DataError(f"the trace is over, and a {call} was asked for", where=self.name)
         was: dict[str, Any] = self._calls.popleft()
         if was["call"] != call:
             raise DataError(f"a {call} is asked for where the trace has a {was['call']}")
-        self._clock.sleep_until(was["t_s"])
+        self._time.sleep_until(was["t_s"])
         return was

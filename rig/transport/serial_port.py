@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
-from rig.transport.line import MAX_DRAIN_S, LineLostError, LineSettings, Received
+from rig.transport.end import LineEnd
+from rig.transport.line import LineLostError, LineSettings, Received
 from rig.transport.parity_marks import ParityMarks
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ POLL_S = 0.005
 """How long one read of the port may block: deadlines are kept to within this."""
 
 
-class SerialTransport:
+class SerialTransport(LineEnd):
     """A line behind pyserial.
 
     Parameters
@@ -49,26 +50,10 @@ class SerialTransport:
         clock: Clock,
         marks: ParityMarks | None = None,
     ) -> None:
+        super().__init__(line, clock, str(port.port))
         self.on_write: Callable[[float], None] | None = None
         self._port = port
-        self._line = line
-        self._clock = clock
         self._marks = marks
-
-    @property
-    def line(self) -> LineSettings:
-        """Speed and framing."""
-        return self._line
-
-    @property
-    def clock(self) -> Clock:
-        """The clock given at the start."""
-        return self._clock
-
-    @property
-    def name(self) -> str:
-        """The device's path."""
-        return str(self._port.port)
 
     @property
     def marks_parity_errors(self) -> bool:
@@ -78,7 +63,7 @@ class SerialTransport:
     def write(self, data: bytes) -> None:
         """Hand `data` to the operating system."""
         if self.on_write is not None:
-            self.on_write(self._clock.monotonic_s())
+            self.on_write(self.clock.monotonic_s())
         try:
             # Past pyserial's layers where that is possible: they cost tens of microseconds, and
             # the line waits for each request.
@@ -93,36 +78,24 @@ class SerialTransport:
         data = b""
         damaged = False
         while True:
-            chunk, chunk_damaged = self._take(count - len(data))
+            chunk, chunk_damaged = self._wait(count - len(data))
             if chunk:
                 data += chunk
                 damaged |= chunk_damaged
-                last_s = self._clock.monotonic_s()
+                last_s = self.clock.monotonic_s()
                 if len(data) == count:
                     return Received(data, last_s, damaged)
-            if (now_s := self._clock.monotonic_s()) >= deadline_s:
+            if (now_s := self.clock.monotonic_s()) >= deadline_s:
                 return Received(data, last_s if data else now_s, damaged)
 
-    def discard(self) -> bytes:
-        """Throw away, and return, what has come and was not read."""
+    def take(self) -> Received:
+        """What has come and was not read."""
         try:
             waiting = self._port.in_waiting
         except _LOST as error:
             raise self._lost(error) from None
-        return self._take(waiting)[0] if waiting else b""
-
-    def drain(self, quiet_s: float) -> bytes:
-        """Throw away, and return, what comes until nothing has come for `quiet_s`."""
-        data = self.discard()
-        start_s = last_s = self._clock.monotonic_s()
-        while (now_s := self._clock.monotonic_s()) < last_s + quiet_s:
-            chunk, _ = self._take(1)
-            if chunk:
-                data += chunk + self.discard()
-                last_s = self._clock.monotonic_s()
-            if now_s > start_s + MAX_DRAIN_S:
-                break
-        return data
+        data, damaged = self._wait(waiting) if waiting else (b"", False)
+        return Received(data, self.clock.monotonic_s(), damaged)
 
     def reopen(self) -> None:
         """Open the port of the same name again.
@@ -133,14 +106,14 @@ class SerialTransport:
             It is not there yet, or refuses the settings.
         """
         self.close()
-        self._port, self._marks = _open(self.name, self._line)
+        self._port, self._marks = _open(self.name, self.line)
 
     def close(self) -> None:
         """Close the port."""
         with suppress(*_LOST):
             self._port.close()
 
-    def _take(self, count: int) -> tuple[bytes, bool]:
+    def _wait(self, count: int) -> tuple[bytes, bool]:
         """At most `count` bytes within `POLL_S`, and whether one of them was damaged."""
         try:
             raw = self._read(count)

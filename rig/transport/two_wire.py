@@ -1,10 +1,10 @@
 """A line that hears itself: 2-wire adapters echo what is sent, and the echo is verified."""
 
-from cdpr8.clock import Clock
-from rig.transport.line import LineSettings, Received, Transport
+from rig.transport.end import Around
+from rig.transport.line import Received, Transport
 
 
-class TwoWire:
+class TwoWire(Around):
     """Swallows exactly the bytes that were sent.
 
     An echo that differs is a collision or a broken line: the answer after it counts as damaged.
@@ -16,24 +16,9 @@ class TwoWire:
     """
 
     def __init__(self, inner: Transport) -> None:
-        self._inner = inner
+        super().__init__(inner)
         self._owed = b""
         self._broken = False
-
-    @property
-    def line(self) -> LineSettings:
-        """Speed and framing."""
-        return self._inner.line
-
-    @property
-    def clock(self) -> Clock:
-        """The inner line's clock."""
-        return self._inner.clock
-
-    @property
-    def name(self) -> str:
-        """What a user calls this line."""
-        return self._inner.name
 
     def write(self, data: bytes) -> None:
         """Send bytes; their echo is expected."""
@@ -53,6 +38,13 @@ class TwoWire:
         broken, self._broken = self._broken, False
         return Received(received.data, received.last_byte_s, received.damaged or broken)
 
+    def take(self) -> Received:
+        """What has come beyond the echo."""
+        came = self._inner.take()
+        data = self._beyond_echo(came.data)
+        broken, self._broken = self._broken, False
+        return Received(data, came.last_byte_s, came.damaged or broken)
+
     def discard(self) -> bytes:
         """Throw away, and return, what has come beyond the echo."""
         return self._beyond_echo(self._inner.discard())
@@ -66,11 +58,7 @@ class TwoWire:
     def reopen(self) -> None:
         """Open the inner line again."""
         self._owed, self._broken = b"", False
-        self._inner.reopen()
-
-    def close(self) -> None:
-        """Close the inner line."""
-        self._inner.close()
+        super().reopen()
 
     def _beyond_echo(self, data: bytes) -> bytes:
         echo, rest = data[: len(self._owed)], data[len(self._owed) :]

@@ -14,9 +14,11 @@ from cdpr8.runfolder import (
     CameraStart,
     ClockAnchor,
     EventKind,
+    FrameFlag,
     RunWriter,
     StartRecord,
     StopRecord,
+    TensionStatus,
     document,
     find_run,
     load_run,
@@ -198,6 +200,22 @@ def test_the_schemas_and_the_page_are_those_of_the_definitions() -> None:
     assert (root / "docs" / "run-folder.md").read_text() == document.page()
     for name, schema in document.schemas().items():
         assert json.loads((document.SCHEMA_FOLDER / name).read_text()) == schema
+
+
+def test_the_page_tells_each_bit_its_own_meaning() -> None:
+    page = document.page()
+    status = page[page.index("## Status bits of") : page.index("## Flag bits of")]
+    flags = page[page.index("## Flag bits of") : page.index("## Kinds of event")]
+    assert "| 1 | `NET_OVERFLOW` | net overflow; not used |" in status
+    assert "| 128 | `NOT_CONTIGUOUS` | the amplifier skipped values |" in status
+    assert "| 1 | `DROPPED_BEFORE` | a frame was lost before this one |" in flags
+    assert "| 128 | `HIGH_REPROJECTION` | the plate fits this picture worse" in flags
+    for section, bits in ((status, TensionStatus), (flags, FrameFlag)):
+        rows = [line for line in section.splitlines() if line.startswith("| ") and "`" in line]
+        assert len(rows) == len(bits)
+        meanings = {line.rsplit("|", 2)[1] for line in rows}
+        assert len(meanings) == len(rows)
+    assert not any(line in flags for line in status.splitlines() if "`" in line and "_" in line)
 
 
 def schema_faults(value: object, schema: dict[str, object]) -> list[str]:

@@ -348,3 +348,28 @@ def test_an_answer_forgives_failures() -> None:
         assert not quarantine.failed(1, 0.0)
         assert not quarantine.failed(1, 0.0)
         quarantine.answered(1)
+
+
+def test_a_thread_that_stood_still_after_a_request_pulls_no_later_value(rig: Rig) -> None:
+    rig = without_noise(rig)
+    _, transport = simulated_line(rig, WavePlatform(slope_n_per_s=0.5))
+    bus = Bus(transport, rig)
+    stations = bus.start()
+    write = transport.write
+    origin_s = transport.clock.monotonic_s()
+    for node in transport._far_end.nodes:
+        node.signal.begin(origin_s)
+
+    def write_and_stand_still(data: bytes) -> None:
+        write(data)
+        transport.clock.sleep_until(transport.clock.monotonic_s() + 5e-3)
+
+    transport.write = write_and_stand_still
+    bus.take(stations[0])
+    transport.write = write
+    errors_s = []
+    for _ in range(200):
+        value = bus.take(stations[0])
+        true_s = (stations[0].scaling.tension_n(value.reading.digits) - 7.0) / 0.5
+        errors_s.append(value.sampled_s - origin_s - true_s)
+    assert abs(np.mean(errors_s[20:])) < 0.1 * stations[0].period_s

@@ -184,8 +184,10 @@ def test_a_display_that_stalls_does_not_touch_the_data(rig: Rig, tmp_path: Path)
 def test_two_amplifiers_at_one_address_are_refused(rig: Rig) -> None:
     bus, transport = simulated_line(rig)
     bus.nodes[3].settings["ADR"] = 2
-    with pytest.raises(DeviceError):
+    with pytest.raises(DeviceError, match="cable 2: amplifier 02 answers garbled") as told:
         Bus(transport, rig).start()
+    assert "nobody has address 04" in told.value.what
+    assert "two may share the address: `rig set-address`" in told.value.remedy
 
 
 def test_a_wrong_baud_rate_is_told(rig: Rig) -> None:

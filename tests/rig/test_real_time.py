@@ -1,11 +1,13 @@
 """Recording in real time: threads, a pseudo-terminal, signals, and kill -9."""
 
+import math
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +19,14 @@ from rig_stand_ins import (
     rig_text,
     virtual_clock,
     with_bus,
+    without_noise,
 )
 
 from cdpr8.clock import RealClock
 from cdpr8.rigfile import Rig
-from cdpr8.runfolder import EventKind, FrameFlag, Run, load_run, read_video
+from cdpr8.runfolder import EventKind, FrameFlag, load_run, read_video
 from rig import schedule
+from rig.amplifier.profile import FIT
 from rig.recorder import record
 from rig.schedule import run_in_threads
 from rig.scribe import FRAMES_WAITING, Sample, ThreadedScribe
@@ -123,34 +127,6 @@ def test_two_signals_end_it_at_once_with_a_stop_record(tmp_path: Path) -> None:
     assert load_run(tmp_path / "run").stop.reason == "stopped_at_once"
 
 
-def test_a_killed_recording_loads_up_to_the_last_moments(tmp_path: Path) -> None:
-    process = start(tmp_path / "run", 60.0)
-    time.sleep(1.0)
-    expected_s = newest_s(tmp_path / "run")
-    process.kill()
-    process.wait()
-    run = load_run(tmp_path / "run")
-    assert run.stop is None
-    assert any("interrupted" in each for each in run.notes)
-    assert run.tension["t_s"].max() >= expected_s
-    assert all_true(run)
-    frames = len(list(read_video(run.video)))
-    assert 0 < frames <= len(run.frames)
-
-
-def newest_s(folder: Path) -> float:
-    """Time of the newest whole row on disk."""
-    return float((folder / "tension.csv").read_text().rsplit("\n", 2)[1].split(",")[0])
-
-
-def all_true(run: Run) -> bool:
-    error = run.tension["tension_n"] - [
-        float(WavePlatform(3.0).tension_at(cable, np.array(max(0.0, t_s))))
-        for cable, t_s in zip(run.tension["cable"], run.tension["t_s"], strict=True)
-    ]
-    return bool(error.abs().max() < 1.0 and error.abs().median() < 0.03)
-
-
 class SlowWriter:
     """A run folder whose encoder hangs until it is let go."""
 
@@ -160,6 +136,7 @@ class SlowWriter:
         self.rows: list[dict[str, float]] = []
         self.kinds: list[EventKind] = []
         self.tension = self.events = self.frames = self
+        self.command = self.command_text = None
 
     def append(self, row: dict[str, float]) -> None:
         self.rows.append(row)
@@ -174,6 +151,8 @@ class SlowWriter:
     def flush(self) -> None: ...
 
     def sync(self) -> None: ...
+
+    def sync_frames(self) -> None: ...
 
 
 def test_an_encoder_that_hangs_stalls_nothing_and_its_loss_is_counted() -> None:
@@ -301,3 +280,27 @@ def test_nine_tenths_of_the_theoretical_sweep_rate_in_real_time(
         )
         best = max(best, recording.rate_per_s(8) / sweeps_per_s)
     assert best >= 0.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("baud", [38400, 115200])
+def test_sampling_instants_in_real_time_are_those_of_ground_truth(
+    rig: Rig, tmp_path: Path, baud: int, record_property: Callable[[str, object], None]
+) -> None:
+    # A ramp without noise: the value itself says when it was sampled. The best of five.
+    rig = without_noise(with_bus(rig, baud=baud))
+    platform, best = WavePlatform(slope_n_per_s=0.5), math.inf
+    for number in range(5):
+        clock = RealClock()
+        machine = assemble(rig, platform, NoisyExposer(), clock, seed=1)
+        folder = tmp_path / str(number)
+        record(rig, rig_text(), folder, excitation=motion(4.0), clock=clock, machine=machine)
+        run, errors_s = load_run(folder), []
+        for cable in range(1, 9):
+            rows = run.cable_tension(cable)
+            rows = rows[rows["t_s"] > 0.2]
+            true_s = (rows["tension_n"] - 5.0 - 2.0 * cable) / platform.slope_n_per_s
+            errors_s.append((rows["t_s"] - true_s).to_numpy())
+        best = min(best, float(np.sqrt(np.mean(np.concatenate(errors_s) ** 2))))
+    record_property("rms_of_period", best * FIT.rates_per_s[0])
+    assert best < 0.35 * FIT.period_s(0)

@@ -3,14 +3,17 @@
 import json
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from rig_stand_ins import WavePlatform, record_virtually, rig_text
+from scipy.spatial.transform import Rotation
 
 from cdpr8.errors import CheckError, DataError, UsageError
 from cdpr8.rigfile import Rig, packaged_rig_path
-from cdpr8.runfolder import EventKind, VideoWriter, load_run
+from cdpr8.runfolder import POSE_AXES, EventKind, VideoWriter, load_run
 from cdpr8.terminal import run_app
 from rig.command import app
 from rig.foreign import ClockMap, ColumnMap, read_foreign_table
@@ -84,6 +87,76 @@ def test_exports_hold_what_the_run_holds(rig: Rig, here: Path) -> None:
     first_ns = topics["/camera"][0][0] - topics["/tension/3"][0][0]
     expected_s = run.frames["t_s"].iloc[0] - rows["t_s"].iloc[0]
     assert first_ns * 1e-9 == pytest.approx(expected_s, abs=1e-6)
+
+
+TIME = {"sec": int, "nsec": int}
+PUBLISHED = {
+    "foxglove.CompressedImage": {"timestamp": TIME, "frame_id": str, "data": str, "format": str},
+    "foxglove.PoseInFrame": {
+        "timestamp": TIME,
+        "frame_id": str,
+        "pose": {
+            "position": dict.fromkeys("xyz", float),
+            "orientation": dict.fromkeys("xyzw", float),
+        },
+    },
+    "foxglove.Log": {
+        "timestamp": TIME,
+        "level": int,
+        "message": str,
+        "name": str,
+        "file": str,
+        "line": int,
+    },
+}
+"""Fields of the message types that Foxglove publishes (its schemas/jsonschema, 2024)."""
+
+
+def shape(value: object) -> object:
+    if isinstance(value, dict):
+        return {name: shape(each) for name, each in value.items()}
+    return type(value)
+
+
+def schema_shape(schema: dict[str, Any]) -> object:
+    if schema["type"] == "object":
+        return {name: schema_shape(each) for name, each in schema["properties"].items()}
+    return {"string": str, "integer": int, "number": float}[schema["type"]]
+
+
+def test_an_mcap_holds_what_foxglove_knows_by_name(rig: Rig, here: Path) -> None:
+    mcap = pytest.importorskip("mcap.reader")
+    record_virtually(rig, here / "run", 0.6)
+    names = ["frame", "t_s", *POSE_AXES, "markers", "flags"]
+    (here / "run" / "pose.csv").write_text(
+        ",".join(names) + "\n0,0.03125,0.1,0.2,0.3,10,20,30,8,0\n1,0.09375,,,,,,,0,8\n"
+    )
+    assert run_app(app, ["export", "run", "--mcap", "--out", "out.mcap"]) == 0
+    seen: dict[str, list[tuple[int, Any]]] = {}
+    with open("out.mcap", "rb") as file:
+        reader = mcap.make_reader(file, validate_crcs=True)
+        summary = reader.get_summary()
+        schemas = {each.name: json.loads(each.data) for each in summary.schemas.values()}
+        times = []
+        for schema, channel, message in reader.iter_messages():
+            assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
+            value = json.loads(message.data)
+            jsonschema.validate(value, schemas[schema.name])
+            seen.setdefault(schema.name, []).append((message.log_time, value))
+            times.append(message.log_time)
+    assert times == sorted(times)
+    for name, fields in PUBLISHED.items():
+        assert schema_shape(schemas[name]) == fields
+        for time_ns, value in seen[name]:
+            assert shape(value) == fields
+            stamp = value["timestamp"]
+            assert stamp["sec"] * 1_000_000_000 + stamp["nsec"] == time_ns
+    assert len(seen["foxglove.CompressedImage"]) == 10
+    ((_, pose),) = seen["foxglove.PoseInFrame"]
+    turn = pose["pose"]["orientation"]
+    expected = Rotation.from_euler("ZYX", [30, 20, 10], degrees=True).as_quat()
+    assert [turn[axis] for axis in "xyzw"] == pytest.approx(expected)
+    assert pose["pose"]["position"] == {"x": 0.1, "y": 0.2, "z": 0.3}
 
 
 def test_an_export_is_one_or_the_other(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -265,3 +338,58 @@ def test_until_is_the_next_time_the_clock_shows_it(text: str, seconds: float) ->
     assert seconds_until(text, datetime(2024, 1, 1, 12, 0, tzinfo=UTC)) == seconds
     with pytest.raises(UsageError, match="no time of day"):
         seconds_until("noon", NOW)
+
+
+def pull_with_log(here: Path, log: str) -> list[str]:
+    (here / "pull.asc").write_text(CATMAN, encoding="cp1252")
+    (here / "winch.log").write_text(log)
+    return [
+        *("import", "--tension", "pull.asc", "--name", "pull"),
+        *("--map", "time=Zeit,1=Kraft 1,2=Kraft 2", "--command", "winch.log"),
+    ]
+
+
+def test_a_winch_log_is_imported_beside_the_tensions(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = "t;L1;E2\n100.0;2.0;10\n100.01;2.1;\n100.02;2.2;12\n"
+    arguments = pull_with_log(here, log)
+    columns = ["--command-map", "time=t,1=L1,2.measured_deg=E2", "--command-sync", "0.01=100.02"]
+    assert run_app(app, [*arguments, *columns]) == 0
+    run = load_run(here / "runs" / "pull")
+    rows = run.command
+    assert rows is not None
+    first = rows[rows["cable"] == 1]
+    assert list(first["t_s"]) == pytest.approx([-0.01, 0.0, 0.01])
+    assert list(first["commanded_m"]) == [2.0, 2.1, 2.2]
+    assert list(rows[rows["cable"] == 2]["measured_deg"]) == [10, 12]
+    assert list(first["log_s"]) == [100.0, 100.01, 100.02]
+    assert rows["arrived_s"].isna().all()
+    assert "winch.log: time=t" in run.start.model_dump()["command_log"]
+    assert not (run.folder / "command.txt").exists()
+    found = {each.what: each.words for each in verify(run)}
+    assert found["command"].startswith("5 rows of 2 cables, 100.0/s")
+
+
+@pytest.mark.parametrize(
+    ("log", "more", "code", "message"),
+    [
+        ("t;L1\n1;2\nbroken\n", ["--command-map", "time=t,1=L1"], 3, "winch.log:3: the line"),
+        ("t;L1\n1;2\n", ["--command-map", "1=L1"], 3, "holds no rows with a time"),
+        ("t;L1\n1;2\n", ["--command-map", "time=t,1=L7"], 2, "--command-map names the column"),
+        ("t;L1\n1;2\n", [], 2, "the command log's columns are t, L1"),
+        ("nothing\n", ["--command-map", "time=t,1=L1"], 3, "holds no row"),
+        ("t;L1\n1;2\n", ["--command-sync", "1"], 2, "--command-sync '1' is no pair of times"),
+    ],
+)
+def test_a_winch_log_that_does_not_fit_is_refused(
+    here: Path,
+    log: str,
+    more: list[str],
+    code: int,
+    message: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run_app(app, [*pull_with_log(here, log), *more]) == code
+    assert message in capsys.readouterr().err
+    assert not (here / "runs").exists()

@@ -1,7 +1,9 @@
 """One port per amplifier: alignment, numbering, times and losses of values that come unasked."""
 
+import math
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -23,12 +25,14 @@ from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import Run, load_run
 from rig.amplifier.frame import Check, FrameFormat
-from rig.machine import open_machine
-from rig.recorder import record
+from rig.machine import Machine, open_machine
+from rig.recorder import Recording, record
 from rig.simulated.faults import LineFaults
 from rig.simulated.rig import assemble
 from rig.streaming.lock import VALUES_TO_LOCK, FrameLock
 from rig.streaming.node_clock import NodeClock
+from rig.transport import LineLostError, Received, Transport
+from rig.transport.end import Around
 
 CRLF = FrameFormat(4, True, Check.CHECKSUM, crlf=True)
 BARE = FrameFormat(4, True, Check.CHECKSUM, crlf=False)
@@ -177,3 +181,149 @@ def test_a_node_clock_follows_the_earliest_arrivals() -> None:
 def test_ports_must_be_named(rig: Rig) -> None:
     with pytest.raises(RigFileError, match="cable 1 has no port"):
         open_machine(with_bus(rig, streaming=True, port="/dev/x"), rig.excitation, RealClock())
+
+
+class Unpluggable(Around):
+    """A line that is gone from one time to another."""
+
+    def __init__(self, inner: Transport) -> None:
+        super().__init__(inner)
+        self.gone_s = self.back_s = math.inf
+
+    @property
+    def gone(self) -> bool:
+        return self.gone_s <= self.clock.monotonic_s() < self.back_s
+
+    def _there(self) -> None:
+        if self.gone:
+            raise LineLostError("the port is gone", where=self.name)
+
+    def write(self, data: bytes) -> None:
+        self._there()
+        self._inner.write(data)
+
+    def read(self, count: int, deadline_s: float) -> Received:
+        self._there()
+        return self._inner.read(count, deadline_s)
+
+    def take(self) -> Received:
+        self._there()
+        return self._inner.take()
+
+    def discard(self) -> bytes:
+        return self.take().data
+
+    def drain(self, quiet_s: float) -> bytes:
+        self._there()
+        return self._inner.drain(quiet_s)
+
+    def reopen(self) -> None:
+        self._there()
+
+
+def faulty_run(
+    rig: Rig, folder: Path, seconds: float, begin: Callable[[Machine, float], None]
+) -> tuple[Recording, Run]:
+    """A virtual recording of eight streams to which something happens."""
+    clock = virtual_clock()
+    rig = streaming(rig)
+    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+    machine.ports = tuple(Unpluggable(port) for port in machine.ports)
+    machine.transport = machine.ports[0]
+    start = machine.begin
+
+    def begin_both(origin_s: float) -> None:
+        start(origin_s)
+        begin(machine, origin_s)
+
+    machine.begin = begin_both
+    recording = record(
+        rig, rig_text(), folder, excitation=motion(seconds), clock=clock, machine=machine
+    )
+    return recording, load_run(folder)
+
+
+def test_a_port_that_is_replugged_streams_again_within_two_seconds(
+    rig: Rig, tmp_path: Path
+) -> None:
+    def pull(machine: Machine, origin_s: float) -> None:
+        machine.ports[2].gone_s, machine.ports[2].back_s = origin_s + 1.0, origin_s + 2.5
+
+    recording, run = faulty_run(rig, tmp_path / "run", 4.5, pull)
+    assert recording.fault is None
+    kinds = run.events[run.events["cable"] == 3].set_index("kind")["t_s"]
+    assert 1.0 <= kinds["line_lost"] < 1.1
+    assert 2.5 <= kinds["line_back"] < 4.5
+    values = run.cable_tension(3)
+    times = values["t_s"].to_numpy()
+    assert times[times > 2.5].min() < 4.5
+    assert not ((times > 1.01) & (times < 2.5)).any()
+    assert np.abs(values["tension_n"] - 11.0).max() < 0.04
+    for cable in (1, 2, 4, 5, 6, 7, 8):  # the others do not notice
+        assert recording.stop.samples[cable] == pytest.approx(2700, abs=30)
+
+
+def test_a_dead_node_takes_nothing_from_the_others_and_comes_back(rig: Rig, tmp_path: Path) -> None:
+    def die(machine: Machine, origin_s: float) -> None:
+        port = machine.ports[4]
+        (node,) = port._inner._far_end.nodes
+        take = port.take
+
+        def take_or_die() -> Received:
+            now_s = port.clock.monotonic_s()
+            if node.powered and origin_s + 1.0 < now_s < origin_s + 2.5:
+                node.powered = False
+            return take()
+
+        port.take = take_or_die
+        other = machine.ports[5]
+        take_other = other.take
+
+        def take_and_revive() -> Received:
+            # A port that is held is not looked at: the time is told by its neighbour.
+            now_s = other.clock.monotonic_s()
+            if not node.powered and now_s >= origin_s + 2.5:
+                node.powered = True
+                node.power_on(now_s)  # the supply was gone: volatile settings are too
+            return take_other()
+
+        other.take = take_and_revive
+
+    recording, run = faulty_run(rig, tmp_path / "run", 6.0, die)
+    kinds = run.events[run.events["cable"] == 5].set_index("kind")["t_s"]
+    assert 1.5 <= kinds["node_lost"] < 1.6
+    assert 2.5 <= kinds["node_back"] < 6.0
+    values = run.cable_tension(5)
+    assert np.abs(values["tension_n"] - 15.0).max() < 0.04
+    assert values["t_s"].max() > 5.9
+    for cable in (1, 2, 3, 4, 6, 7, 8):
+        assert recording.stop.samples[cable] >= 0.9 * 3600
+
+
+def test_bytes_of_a_stream_that_is_started_anew_are_kept(rig: Rig, tmp_path: Path) -> None:
+    sent: list[bytes] = []
+
+    def deafen(machine: Machine, origin_s: float) -> None:
+        port = machine.ports[0]
+        take, noise = port.take, np.random.default_rng(5)
+
+        def take_noise() -> Received:
+            received = take()
+            if origin_s + 0.5 < port.clock.monotonic_s() < origin_s + 1.0 and received.data:
+                sent.append(noise.bytes(len(received.data)))
+                return Received(sent[-1], received.last_byte_s, received.damaged)
+            return received
+
+        port.take = take_noise
+
+    recording, run = faulty_run(rig, tmp_path / "run", 2.0, deafen)
+    assert recording.stop.lost["restart"] >= 1
+    rows = run.events[run.events["cable"] == 1]
+    told = "".join(
+        words.rsplit(": ", 1)[1]
+        for kind, words in zip(rows["kind"], rows["detail"], strict=True)
+        if kind in ("bad_frame", "stray_bytes")
+    ).replace(" ", "")
+    assert len(sent) > 20
+    # The first bad frame is told whole, and its later bytes again with what follows.
+    assert b"".join(sent)[1:].hex().upper() in told
