@@ -1,0 +1,1 @@
+"""The blind challenge: runs with concealed physics, diagnosed without the answer, then scored."""

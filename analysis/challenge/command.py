@@ -1,0 +1,104 @@
+"""`analysis challenge`: make runs with concealed physics, diagnose them blind, score."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cdpr8.terminal import note, progress, say, say_json, say_table
+
+app = typer.Typer(
+    no_args_is_help=True,
+    help="Blind tests of the diagnosis. Example: analysis challenge make --n 24 --seed 1 OUT",
+)
+
+Folder = Annotated[Path, typer.Argument(help="folder of the challenge", show_default=False)]
+Workers = Annotated[int, typer.Option(help="processes; -1: one for each core")]
+Scheduler = Annotated[str | None, typer.Option(help="address of a Dask scheduler")]
+
+
+@app.command()
+def make(
+    out: Folder,
+    n: Annotated[int, typer.Option(min=1, help="number of cases")] = 240,
+    seed: Annotated[int, typer.Option(min=0, help="all the randomness")] = 0,
+    rivals: Annotated[
+        bool, typer.Option(help="find out which effects could be told apart (takes half the time)")
+    ] = True,
+    workers: Workers = 1,
+    scheduler: Scheduler = None,
+) -> None:
+    """Make runs with concealed effects; what they are is sealed.
+
+    Example: analysis challenge make --n 24 --seed 1 /tmp/challenge
+    """
+    _engine_there()
+    from analysis.challenge.make import make as make_all
+    from model.jobs import Where
+
+    with progress("making", n) as step:
+        digest = make_all(out, n, seed, rivals=rivals, where=Where(workers, scheduler), step=step)
+    say(f"{n} cases in {out}; the truth is sealed with SHA-256 {digest}")
+
+
+def _engine_there() -> None:
+    """The plant needs MuJoCo, which is an extra."""
+    from importlib.util import find_spec
+
+    from cdpr8.errors import UsageError
+
+    if find_spec("mujoco") is None:
+        raise UsageError(
+            "the plant needs MuJoCo, which is not installed",
+            remedy="pip install 'cdpr8[challenge]'",
+        )
+
+
+@app.command()
+def run(
+    out: Folder,
+    seed: Annotated[int, typer.Option(min=0, help="of the diagnosis")] = 0,
+    workers: Workers = 1,
+    scheduler: Scheduler = None,
+    again: Annotated[bool, typer.Option("--again", help="forget the answers there are")] = False,
+) -> None:
+    """Diagnose every case blind; go on where it was interrupted.
+
+    Example: analysis challenge run /tmp/challenge --workers -1
+    """
+    from analysis.challenge.run import run as run_all
+    from analysis.challenge.seal import read_index
+    from model.jobs import Where
+
+    count = len(read_index(out)["cases"])
+    with progress("diagnosing", count) as step:
+        failed = run_all(out, where=Where(workers, scheduler), seed=seed, again=again, step=step)
+    say(f"{count} cases diagnosed" + (f", {failed} of them ended in an error" if failed else ""))
+
+
+@app.command()
+def score(
+    out: Folder,
+    report: Annotated[Path | None, typer.Option(help="write the page of the proof here")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="results as JSON")] = False,
+) -> None:
+    """Open the seal and hold the answers against the truth.
+
+    Example: analysis challenge score /tmp/challenge --report docs/proof.md
+    """
+    from analysis.challenge.score import as_dictionary, write_score
+    from analysis.challenge.score import score as score_all
+
+    found = score_all(out)
+    written = write_score(found, out)
+    if report is not None:
+        from analysis.challenge.report import write_report
+
+        written += write_report(found, report)
+    if as_json:
+        say_json(as_dictionary(found))
+    else:
+        from analysis.challenge.table import printed
+
+        say_table(printed(found.rows))
+    note("written: " + ", ".join(str(path) for path in written))

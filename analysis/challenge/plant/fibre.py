@@ -1,0 +1,168 @@
+"""What a cable's material does along itself: elastic, unilateral, lossy, creeping, hooked."""
+
+import numpy as np
+from numba import njit
+
+from analysis.challenge.plant import layout as at
+
+STOP = 20.0
+"""Stiffness of the hook's stops over that of the cable."""
+
+HOOK_TIME_S = 1.5e-3
+"""How long the hook takes to slide home, s."""
+
+RIM_HZ = 90.0
+"""Tone of the pulley's rim on the cable that creeps over it, Hz."""
+
+RIM_LOSS = 0.5
+
+LADDER_FIRST_HZ = 0.05
+LADDER_RATIO = 3.2
+"""The rungs of the structural ladder: 0.05 Hz to 170 Hz."""
+
+
+@njit(cache=True)
+def pull(p, s, stretch, speed, chord, level, time_s, step_s):  # type: ignore[no-untyped-def]
+    """Tension behind the pulley, N.
+
+    Parameters
+    ----------
+    p, s
+        Numbers and states of the cable.
+    stretch
+        Elongation over rest with what vibration adds, m.
+    speed
+        Its rate, m/s.
+    chord
+        Length of the straight line, m.
+    level
+        Cosine of its elevation.
+    time_s, step_s
+        Time and step, s.
+    """
+    moved = stretch - s[at.OLD] if s[at.STARTED] > 0.0 else 0.0
+    s[at.OLD] = stretch
+    stretch -= p[at.SLACK] + s[at.CREPT]
+    if p[at.PLAY] > 0.0:
+        stretch -= _hook(p, s, stretch, step_s)
+    if p[at.SAG] > 0.0:
+        tension = _hanging(p, stretch, chord, level)
+    else:
+        tension = p[at.PRETENSION] + p[at.STIFFNESS] * stretch
+    if p[at.CUBIC] > 0.0:
+        reach = stretch / p[at.CUBIC_REACH]
+        tension += p[at.CUBIC] * stretch**3 / (1.0 + reach * reach)
+    if p[at.CREEP] > 0.0:
+        rate = p[at.CREEP] * tension / p[at.STIFFNESS] / (p[at.CREEP_TIME] + time_s)
+        s[at.CREPT] += rate * step_s
+    tension += _lossy(p, s, moved, step_s)
+    if p[at.RIM] > 0.0:
+        tension += _rim(p, s, stretch, speed, step_s)
+    return max(tension, 0.0)
+
+
+@njit(cache=True)
+def _lossy(p, s, moved, step_s):  # type: ignore[no-untyped-def]
+    """Maxwell branches (dashpot, relaxation, ladder) and Jenkins sliders (Iwan 1966)."""
+    stiff = p[at.STIFFNESS]
+    force = 0.0
+    if p[at.VISCOUS] > 0.0:
+        tau = p[at.VISCOUS_TIME]
+        s[at.DASHPOT] = _branch(s[at.DASHPOT], p[at.VISCOUS] / tau, tau, moved, step_s)
+        force += s[at.DASHPOT]
+    for j in range(2):
+        if p[at.RELAX + j] > 0.0:
+            tau = p[at.RELAX_TIME + j]
+            new = _branch(s[at.MAXWELL + j], p[at.RELAX + j] * stiff, tau, moved, step_s)
+            s[at.MAXWELL + j] = new
+            force += new
+    if p[at.LOSS_FACTOR] > 0.0:
+        # A dense ladder of equal rungs loses (pi / 2) / ln(ratio) of one rung a radian.
+        rung = p[at.LOSS_FACTOR] * stiff * np.log(LADDER_RATIO) * 2.0 / np.pi
+        hertz = LADDER_FIRST_HZ
+        for j in range(at.RUNGS):
+            tau = 1.0 / (2.0 * np.pi * hertz)
+            s[at.LADDER + j] = _branch(s[at.LADDER + j], rung, tau, moved, step_s)
+            force += s[at.LADDER + j]
+            hertz *= LADDER_RATIO
+    if p[at.LOOP] > 0.0:
+        held = 0.0
+        for j in range(at.SLIDERS):
+            limit = p[at.LOOP_YIELD] * 2.0 * (j + 0.5) / at.SLIDERS
+            new = min(max(s[at.SLIDER + j] + moved, -limit), limit)
+            s[at.SLIDER + j] = new
+            held += new
+        force += p[at.LOOP] * stiff * held / at.SLIDERS
+    return force
+
+
+@njit(cache=True)
+def _branch(force, stiff, tau, moved, step_s):  # type: ignore[no-untyped-def]
+    """A spring in series with a dashpot, exact for a constant speed."""
+    ratio = step_s / tau
+    left = np.exp(-ratio)
+    return force * left + stiff * moved * (1.0 - left) / ratio
+
+
+@njit(cache=True)
+def _hanging(p, stretch, chord, level):  # type: ignore[no-untyped-def]
+    """Elastic catenary over its chord: s = (2 T/w) sinh(w L / 2 T), solved by Newton's method."""
+    weight = p[at.SAG] * p[at.DENSITY] * 9.80665 * level
+    stiff = p[at.STIFFNESS]
+    if weight <= 0.0:
+        return p[at.PRETENSION] + stiff * stretch
+    rest = _arc(p[at.PRETENSION], weight, chord - stretch) - (chord - stretch)
+    tension = max(p[at.PRETENSION] + stiff * stretch, 0.2 * p[at.PRETENSION])
+    for _ in range(8):
+        arc = _arc(tension, weight, chord)
+        # Elastic length and shape together give the chord.
+        off = stretch + (arc - chord) - rest - (tension - p[at.PRETENSION]) / stiff
+        slope = -2.0 * (arc - chord) / tension - 1.0 / stiff
+        step = -off / slope
+        tension = max(tension + step, 0.05 * p[at.PRETENSION])
+        if abs(step) < 1e-9:
+            break
+    return tension
+
+
+@njit(cache=True)
+def _arc(tension, weight, chord):  # type: ignore[no-untyped-def]
+    """Length of a catenary of given horizontal pull over its chord, m."""
+    half = 0.5 * weight * chord / tension
+    if half < 1e-3:
+        return chord * (1.0 + half * half / 6.0)
+    return chord * np.sinh(half) / half
+
+
+@njit(cache=True)
+def _hook(p, s, stretch, step_s):  # type: ignore[no-untyped-def]
+    """Way of a hook in its gap, m: held by friction, caught by stiff stops, slow by a damper."""
+    stiff, hold, gap, way = p[at.STIFFNESS], p[at.HOLD], p[at.PLAY], s[at.HOOK]
+    drive = stiff * (stretch - way) - STOP * stiff * _beyond(way, gap)
+    if abs(drive) > hold:
+        goal = stretch - np.sign(drive) * hold / stiff
+        if abs(goal) > gap:
+            goal = (goal + STOP * gap * np.sign(goal)) / (1.0 + STOP)
+        way += (goal - way) * (1.0 - np.exp(-step_s / HOOK_TIME_S))
+    s[at.HOOK] = way
+    return way
+
+
+@njit(cache=True)
+def _beyond(way, gap):  # type: ignore[no-untyped-def]
+    """By how much the hook presses into a stop, m, with its sign."""
+    return np.sign(way) * max(abs(way) - gap, 0.0)
+
+
+@njit(cache=True)
+def _rim(p, s, stretch, speed, step_s):  # type: ignore[no-untyped-def]
+    """A rim of its own mass, dragged by the cable through a stiff, lossy contact."""
+    turn = 2.0 * np.pi * RIM_HZ
+    mass = p[at.RIM]
+    way, rate = s[at.WHEEL], s[at.WHEEL + 1]
+    if s[at.STARTED] <= 0.0:
+        way, rate = stretch, speed
+    force = mass * (turn * turn * (stretch - way) + 2.0 * RIM_LOSS * turn * (speed - rate))
+    rate += force / mass * step_s
+    s[at.WHEEL], s[at.WHEEL + 1] = way + rate * step_s, rate
+    return force

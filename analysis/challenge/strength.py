@@ -1,0 +1,81 @@
+"""How large a concealed effect is: near the limit of what can be seen, usual, or strong."""
+
+import numpy as np
+
+from analysis.challenge.case import Case
+from analysis.challenge.draw import LOOK_STEP_S
+from analysis.challenge.plant.concealed import Concealed
+from analysis.challenge.visibility import Metric, shows
+
+LIMIT = (10.0, 30.0)
+"""By how much an effect near the limit is to stand out."""
+
+STRONG = (2.5, 4.0)
+"""Of the usual size."""
+
+WEAKEST = 1.0 / 30.0
+"""Of the usual size; weaker, an effect is below what any model of such a machine is good for."""
+
+FARTHEST_RAD = 0.6
+"""A platform that turns farther has broken loose: no laboratory would keep the run."""
+
+ROUNDS = 4
+CLOSE = 1.3
+
+
+def of_strength(
+    case: Case,
+    concealed: Concealed,
+    strength: str,
+    metric: Metric,
+    generator: np.random.Generator,
+) -> Concealed:
+    """The effect at the size that a strength asks for.
+
+    Parameters
+    ----------
+    case
+        Its machine and runs.
+    concealed
+        At its usual size.
+    strength
+        "limit", "typical" or "strong".
+    metric
+        Of the machine and runs.
+    generator
+        Source of the draw.
+    """
+    effect = concealed.effect
+    sign = -1.0 if concealed.size < 0.0 else 1.0
+    if strength == "typical":
+        return concealed
+    if strength == "strong":
+        size = abs(concealed.size) * float(generator.uniform(*STRONG))
+        return concealed.resized(sign * min(size, effect.most))
+    goal = float(np.exp(generator.uniform(*np.log(LIMIT))))
+    size = abs(concealed.size)
+    least = max(effect.least, WEAKEST * effect.typical)
+    for _ in range(ROUNDS):
+        found = shows(case, concealed.resized(sign * size), metric)
+        if goal / CLOSE < found < goal * CLOSE:
+            break
+        ratio = goal / max(found, 1e-3)
+        # Towards zero an effect may die off as its square or stay as its root.
+        size *= float(np.clip(ratio, 1e-3, 30.0))
+        size = min(max(size, least), effect.most)
+        if size in (least, effect.most) and ratio != 1.0:
+            break
+    return concealed.resized(sign * size)
+
+
+def tamed(case: Case) -> Case:
+    """The same case, its effects made smaller until the machine holds together."""
+    while case.concealed and not all(_holds(case, number) for number in range(len(case.runs))):
+        case = case.with_concealed(*(one.resized(0.5 * one.size) for one in case.concealed))
+    return case
+
+
+def _holds(case: Case, number: int) -> bool:
+    course = case.happened(case.runs[number], LOOK_STEP_S)
+    whole = np.isfinite(course.tension_n).all() and np.isfinite(course.pose).all()
+    return bool(whole and np.abs(course.pose[:, 3:]).max() < FARTHEST_RAD)
