@@ -130,16 +130,18 @@ def _sines(motion: Motion) -> tuple[RampedSine, ...]:
     """The sine a motion is made of, as an imperfect drive has altered it so far."""
     if isinstance(motion, RampedSine):
         return (motion,)
-    if isinstance(motion, Altered) and isinstance(motion.motion, RampedSine):
-        sine = motion.motion
-        return (
+    if isinstance(motion, Altered):
+        return tuple(
             replace(
                 sine,
                 amplitude_rad=motion.factor * sine.amplitude_rad,
                 frequency_hz=motion.pace * sine.frequency_hz,
                 start_s=sine.start_s + motion.late_s,
-            ),
+            )
+            for sine in _sines(motion.motion)
         )
+    if isinstance(motion, Loose):
+        return _sines(motion.motion)
     return ()
 
 

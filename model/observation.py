@@ -79,19 +79,22 @@ def observe(
 
 
 def _camera(simulation: Simulation) -> Look:
-    """The pose at any time, by a spline through the rows; at a row, the row itself."""
-    from scipy.interpolate import CubicSpline
-
-    time_s = simulation.t_s
-    spline = CubicSpline(time_s, simulation.pose)
+    """The pose at any time, by cubics through the rows with their rates; at a row, the row."""
+    time_s, pose, rate = simulation.t_s, simulation.pose, simulation.pose_rate
+    if len(time_s) < 2:
+        return lambda stamp_s: np.repeat(pose[:1], len(stamp_s), axis=0)
 
     def look(stamp_s: Array) -> Array:
         at_s = np.clip(stamp_s, time_s[0], time_s[-1])
-        pose = np.asarray(spline(at_s), dtype=np.float64)
-        row = np.clip(np.searchsorted(time_s, at_s), 0, len(time_s) - 1)
-        exact = time_s[row] == at_s
-        pose[exact] = simulation.pose[row[exact]]
-        return pose
+        row = np.clip(np.searchsorted(time_s, at_s, side="right") - 1, 0, len(time_s) - 2)
+        step = (time_s[row + 1] - time_s[row])[:, None]
+        part = (at_s - time_s[row])[:, None] / step
+        left = 1.0 - part
+        seen: Array = (
+            left**2 * ((1.0 + 2.0 * part) * pose[row] + part * step * rate[row])
+            + part**2 * ((1.0 + 2.0 * left) * pose[row + 1] - left * step * rate[row + 1])
+        )
+        return seen
 
     return look
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from model.compiled import compiled
 from model.kernel import Extras
+from model.kinematics import rotation, trigonometry
 from model.machine import Machine
 
 Array = NDArray[np.float64]
@@ -63,17 +64,48 @@ def rest_pose(machine: Machine, extras: Extras | None, wrench: Array, states: in
     return np.zeros(6)
 
 
+def tones_hz(machine: Machine) -> Array:
+    """Tones of the platform on its cables about X* = 0, pretension included, shape (6,), Hz.
+
+    Pretension turns with the cables it pulls by, which stiffens the softest modes most.
+
+    Parameters
+    ----------
+    machine
+        The plant.
+    """
+
+    def net(pose: Array) -> Array:
+        stretched = _lengths(machine, pose) - machine.rest_length
+        return _pull(machine, pose, machine.pretension + machine.stiffness * stretched)
+
+    sides = [net(STEP * row) - net(-STEP * row) for row in np.eye(6)]
+    stiffness = -np.array(sides).T / (2.0 * STEP)
+    inertia = np.zeros((6, 6))
+    inertia[:3, :3] = machine.mass * np.eye(3)
+    inertia[3:, 3:] = machine.inertia
+    squares = np.linalg.eigvals(np.linalg.solve(inertia, stiffness)).real
+    return np.asarray(np.sort(np.sqrt(np.maximum(squares, 0.0))) / (2.0 * np.pi))
+
+
+def _arms(machine: Machine, pose: Array) -> Array:
+    """r_i in O-XYZ, shape (8, 3)."""
+    return np.asarray(machine.anchor @ _rotation(pose[3:]).T)
+
+
+def _rotation(angles: Array) -> Array:
+    """R = Rz(psi) Ry(theta) Rx(phi), shape (3, 3)."""
+    return np.array(rotation(trigonometry((float(angles[0]), float(angles[1]), float(angles[2])))))
+
+
+def _lengths(machine: Machine, pose: Array) -> Array:
+    along = machine.base - pose[:3] - _arms(machine, pose)
+    return np.asarray(np.linalg.norm(along, axis=1))
+
+
 def _pull(machine: Machine, pose: Array, tension: Array) -> Array:
     """Force and moment of the cables on the platform, shape (6,)."""
-    roll, pitch, yaw = pose[3:]
-    about_x = np.array(
-        [[1, 0, 0], [0, np.cos(roll), -np.sin(roll)], [0, np.sin(roll), np.cos(roll)]]
-    )
-    about_y = np.array(
-        [[np.cos(pitch), 0, np.sin(pitch)], [0, 1, 0], [-np.sin(pitch), 0, np.cos(pitch)]]
-    )
-    about_z = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
-    arm = machine.anchor @ (about_z @ about_y @ about_x).T
+    arm = _arms(machine, pose)
     along = machine.base - pose[:3] - arm
     force = tension[:, None] * along / np.linalg.norm(along, axis=1, keepdims=True)
     return np.concatenate([force.sum(axis=0), np.cross(arm, force).sum(axis=0)])

@@ -75,7 +75,7 @@ class ActiveEffect:
         columns = {}
         for parameter in self.effect.parameters:
             column = np.full(CABLES, self.values.get(parameter.name, parameter.default))
-            if parameter.magnitude and parameter.per_cable:
+            if parameter.magnitude and parameter.per_cable and self.cables != ALL_CABLES:
                 elsewhere = np.setdiff1d(ALL_CABLES, self.cables) - 1
                 column[elsewhere] = 0.0
             columns[parameter.name] = column

@@ -1,5 +1,6 @@
 """Runs written by the run-folder writer from plain numbers, with known truth."""
 
+import sys
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
@@ -21,6 +22,9 @@ from cdpr8.runfolder import (
 )
 from cdpr8.runfolder.tables import POSE
 from rig.simulated.plant import PlatformTrajectory, simulate_platform
+
+# pytest imports test modules by path; the stand-ins beside them are imported by name.
+sys.path.insert(0, str(Path(__file__).parent))
 
 EXCITATION = Excitation(motion_s=6.0)
 ANGLE_NOISE_DEG = 0.004

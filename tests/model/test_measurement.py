@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from model.effects import library
+from model.motion import RampedSine
 
 TIME_S = np.arange(4001) / 1000.0
 CIRCULAR = 2.0 * np.pi * 2.0
@@ -77,3 +78,13 @@ def test_a_camera_and_its_clock_shift_and_scale_as_they_say(
     seen = library()[name].measure(pose_at, **values)(TIME_S)
     assert seen == pytest.approx(wanted(TIME_S), rel=1e-12, abs=1e-12)
     assert np.abs(seen - pose_at(TIME_S)).max() > 1e-4
+
+
+def test_a_harmonic_is_heard_however_often_the_drive_was_altered_before() -> None:
+    from model.altered import Altered, Distorted
+
+    sine = RampedSine(1, 0.03, 2.0, 0.0, 4.0, 0.0, 4.0)
+    time_s = np.linspace(0.0, 4.0, 400)
+    twice = Altered(Altered(sine, factor=1.1), pace=1.01)
+    added = Distorted(twice, 0.1, 2, 0.0).at(time_s)[0] - twice.at(time_s)[0]
+    assert np.abs(added).max() == pytest.approx(0.1 * 1.1 * 0.03, rel=0.01)

@@ -1,0 +1,256 @@
+"""The library's effects as candidates: which of their numbers are fitted, and how."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import atan2, hypot
+
+import numpy as np
+
+from analysis.engine.system import Candidate, Setting, Shape, Term
+from model.library.discovery import library
+from model.library.effect import Effect, Parameter
+
+CABLE_NUMBERS = tuple(range(1, 9))
+
+PAIRS = tuple((i, k) for i in CABLE_NUMBERS for k in CABLE_NUMBERS if i < k)
+
+LAW, LINEAR, NUMBER = 0.12, 0.05, 0.01
+"""Errors of form: of a law of friction or of a fibre, of a linear law, of a factor or an offset."""
+
+
+@dataclass(frozen=True)
+class Policy:
+    """How one effect is fitted, where that is not plain from the library.
+
+    Parameters
+    ----------
+    steps
+        Size of a magnitude for screening; default: the library's default.
+    shapes
+        Numbers that are fitted, each with the values that are tried in screening; the others keep
+        their default.
+    form_share
+        Error of form; None: by the side it acts on.
+    """
+
+    steps: Mapping[str, float] = field(default_factory=dict)
+    shapes: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    form_share: float | None = None
+
+
+POLICIES: dict[str, Policy] = {
+    "anchor_play": Policy(shapes={"hold_n": (0.5,)}, form_share=0.3),
+    "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
+    "cable_hysteresis": Policy(shapes={"yield_m": (1e-3,)}),
+    "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
+    "cable_slack": Policy(form_share=NUMBER),
+    "cable_viscous": Policy(form_share=LINEAR),
+    "cable_structural": Policy(form_share=LINEAR),
+    "platform_damping": Policy(form_share=LINEAR),
+    "cable_modes": Policy(form_share=0.4),
+    "cable_end_forcing": Policy(form_share=0.2),
+    "frame_compliance": Policy(shapes={"frame_hz": (25.0,)}),
+    "pulley_presliding": Policy(shapes={"presliding_m": (3e-4,)}),
+    "pulley_stribeck": Policy(shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,)}),
+    "pulley_inertia": Policy(form_share=LINEAR),
+    "pulley_geometry": Policy(form_share=LINEAR),
+    "centre_of_mass": Policy(
+        steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}
+    ),
+    "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),
+    "camera_axis": Policy(steps={"axis_roll_deg": 0.5, "axis_pitch_deg": 0.5, "axis_yaw_deg": 0.5}),
+    "camera_latency": Policy(steps={"latency_s": 0.003}),
+    "camera_exposure": Policy(form_share=LINEAR),
+    "camera_rolling_shutter": Policy(form_share=LINEAR),
+    "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
+    "cell_drift": Policy(form_share=LINEAR),
+    "drive_phase": Policy(steps={"late_s": 0.003}),
+    "drive_backlash": Policy(form_share=LAW),
+    "clock_drift": Policy(steps={"drift_ppm": 200.0}),
+    "drive_frequency": Policy(steps={"frequency_share": 2e-4}),
+}
+
+FRICTION = "friction at the pulleys"
+FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_presliding")
+"""Laws of one thing: two of them at once are rather one law that is none of these."""
+
+SATURATION_STEP_N = 0.3
+
+
+def candidates(
+    names: Sequence[str] | None, times_s: Sequence[tuple[float, float]], frame_hz: float
+) -> tuple[Candidate, ...]:
+    """Candidates of the library.
+
+    Parameters
+    ----------
+    names
+        Those to look at; None: all.
+    times_s
+        Start and end of the motion of each run.
+    frame_hz
+        Of the camera.
+    """
+    del frame_hz
+    chosen = library() if names is None else {name: library()[name] for name in names}
+    found = []
+    for name, effect in chosen.items():
+        if name == "drive_harmonic":
+            found.append(_harmonic(effect))
+        elif name == "cell_swapped":
+            found.append(_swapped(effect))
+        elif name == "cell_saturation":
+            found.append(_saturation(effect))
+        elif name == "frames_dropped":
+            found.append(_dropped(effect, times_s))
+        else:
+            found.append(_plain(effect, POLICIES.get(name, Policy())))
+    return tuple(found)
+
+
+def _plain(effect: Effect, policy: Policy) -> Candidate:
+    magnitudes = [one for one in effect.parameters if one.magnitude]
+    terms = []
+    for one in magnitudes:
+        step = policy.steps.get(one.name, one.default) or 0.2 * one.high
+        if effect.name == "geometry":
+            step = 0.003
+        if one.per_cable:
+            terms += [_term(one, step, str(cable)) for cable in CABLE_NUMBERS]
+        else:
+            terms.append(_term(one, step, ""))
+    shapes = tuple(
+        Shape(one.name, one.unit, one.default, one.low, one.high, policy.shapes[one.name],
+              logarithmic=one.low > 0.0)
+        for one in effect.parameters
+        if one.name in policy.shapes
+    )  # fmt: skip
+    exact = effect.acts.side in ("parameter", "cell", "camera", "clock", "drive")
+    form = policy.form_share if policy.form_share is not None else NUMBER if exact else LAW
+    wholes = _wholes(magnitudes[0]) if len(magnitudes) == 1 and magnitudes[0].per_cable else ()
+    return Candidate(
+        name=effect.name,
+        title=effect.title,
+        side=effect.acts.side,
+        terms=tuple(terms),
+        shapes=shapes,
+        form_share=form,
+        shareable=len(magnitudes) == 1,
+        combinations=wholes,
+        chosen_terms=4 if effect.name == "geometry" else 0,
+        family=FRICTION if effect.name in FRICTIONS else "",
+    )
+
+
+def _term(parameter: Parameter, step: float, place: str) -> Term:
+    name = f"{parameter.name}@{place}" if place else parameter.name
+    return Term(name, parameter.name, parameter.unit, place, parameter.low, parameter.high, step)
+
+
+def _wholes(parameter: Parameter) -> tuple[tuple[str, ...], ...]:
+    """All cables, the upper and the lower four: sets that often share their fate."""
+    sets = (CABLE_NUMBERS, CABLE_NUMBERS[:4], CABLE_NUMBERS[4:])
+    return tuple(tuple(f"{parameter.name}@{cable}" for cable in one) for one in sets)
+
+
+def _harmonic(effect: Effect) -> Candidate:
+    limit = next(one.high for one in effect.parameters if one.name == "harmonic_share")
+    terms = tuple(
+        Term(name, "harmonic_share", "1", "", -limit, limit, 0.01) for name in ("sine", "cosine")
+    )
+    order = Shape("order", "1", 2.0, 2.0, 5.0, (2.0, 3.0, 4.0, 5.0), whole=True)
+    return Candidate(effect.name, effect.title, effect.acts.side, terms, (order,), LINEAR,
+                     together=True, shareable=False)  # fmt: skip
+
+
+def _swapped(effect: Effect) -> Candidate:
+    term = Term("swapped", "swapped", "1", "", 0.0, 1.0, 1.0)
+    pair = Shape(
+        "pair", "1", 0.0, 0.0, len(PAIRS) - 1.0, tuple(float(i) for i in range(len(PAIRS))),
+        logarithmic=False, whole=True,
+    )  # fmt: skip
+    return Candidate(effect.name, effect.title, effect.acts.side, (term,), (pair,), NUMBER,
+                     fixed=True)  # fmt: skip
+
+
+def _saturation(effect: Effect) -> Candidate:
+    terms = tuple(
+        Term(f"clipped_n@{cable}", "clipped_n", "N", str(cable), 0.0, 30.0, SATURATION_STEP_N)
+        for cable in CABLE_NUMBERS
+    )
+    return Candidate(effect.name, effect.title, effect.acts.side, terms, (), 0.1, shareable=False)
+
+
+def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]]) -> Candidate:
+    term = Term("frames", "frames", "1", "", 0.0, 3.0, 1.0)
+    count = Shape("count", "1", 1.0, 1.0, 3.0, (1.0, 2.0, 3.0), logarithmic=False, whole=True)
+    moments: list[float] = []
+    for i, (start, end) in enumerate(times_s):
+        spacing = 0.25 if len(times_s) == 1 else 0.5
+        moments += [1000.0 * i + at for at in np.arange(start + 0.25, end - 0.1, spacing)]
+    when = Shape("moment", "s", moments[0], 0.0, 1e5, tuple(moments), logarithmic=False, whole=True)
+    return Candidate(effect.name, effect.title, effect.acts.side, (term,), (count, when), NUMBER,
+                     fixed=True)  # fmt: skip
+
+
+def library_values(
+    name: str, setting: Setting, peaks_n: Sequence[float], record: int, frame_hz: float
+) -> dict[str, float | tuple[float, ...]] | None:
+    """A candidate's numbers as the library's effect takes them.
+
+    Parameters
+    ----------
+    name, setting
+        The candidate and its numbers.
+    peaks_n
+        Highest tension of each cable without it.
+    record
+        Which run it is for.
+    frame_hz
+        Of the camera.
+
+    Returns
+    -------
+    dict or None
+        None where it does nothing in this run.
+    """
+    if name == "drive_harmonic":
+        sine, cosine = setting.values.get("sine", 0.0), setting.values.get("cosine", 0.0)
+        return {
+            "harmonic_share": hypot(sine, cosine),
+            "harmonic_phase_rad": atan2(cosine, sine),
+            "order": setting.shapes.get("order", 2.0),
+        }
+    if name == "cell_swapped":
+        pair = PAIRS[round(setting.shapes.get("pair", 0.0))]
+        on = setting.values.get("swapped", 0.0) > 0.0
+        return {"swapped": tuple(float(on and c in pair) for c in CABLE_NUMBERS)}
+    if name == "cell_saturation":
+        clipped = [setting.values.get(f"clipped_n@{c}", 0.0) for c in CABLE_NUMBERS]
+        return {
+            "limit_n": tuple(
+                max(peak - clip, 1e-3) if clip > 0.0 else 0.0
+                for peak, clip in zip(peaks_n, clipped, strict=True)
+            )
+        }
+    if name == "frames_dropped":
+        moment = setting.shapes.get("moment", 0.0)
+        if setting.values.get("frames", 0.0) <= 0.0 or int(moment // 1000.0) != record:
+            return None
+        return {
+            "frames": setting.shapes.get("count", 1.0),
+            "at_s": moment % 1000.0,
+            "frame_hz": frame_hz,
+        }
+    effect = library()[name]
+    values: dict[str, float | tuple[float, ...]] = dict(setting.shapes)
+    for one in effect.parameters:
+        if not one.magnitude:
+            continue
+        if one.per_cable:
+            values[one.name] = tuple(
+                setting.values.get(f"{one.name}@{c}", 0.0) for c in CABLE_NUMBERS
+            )
+        else:
+            values[one.name] = setting.values.get(one.name, 0.0)
+    return values

@@ -1,0 +1,85 @@
+"""The figures of a diagnosis, drawn from what it left in the results folder."""
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from analysis.diagnosis.figure_fit import fit, improvement
+from analysis.diagnosis.figure_loops import loops, speeds
+from analysis.diagnosis.figure_maps import residual_map
+from analysis.diagnosis.figure_ranking import ranking_figure
+from analysis.diagnosis.figure_style import LIGHT, Look
+from analysis.diagnosis.pictures import Pictures
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Draw = Callable[[Look], "Figure"]
+
+
+def drawings(said: Mapping[str, Any], pictures: Pictures | None) -> Iterator[tuple[str, Draw]]:
+    """Each figure that can be drawn of a diagnosis: its name, and what draws it.
+
+    Parameters
+    ----------
+    said
+        The statement.
+    pictures
+        Its arrays; None: figures of the statement alone.
+    """
+    if pictures is not None:
+        yield from _of_runs(pictures)
+    if len(said.get("ranking", [])) > 1:
+        yield "ranking", partial(ranking_figure, said)
+    if any(said["fit"].get("before", {}).values()):
+        yield "improvement", partial(improvement, said)
+
+
+def _of_runs(pictures: Pictures) -> Iterator[tuple[str, Draw]]:
+    for run in pictures.records:
+        after = f"_{run.name}" if len(pictures.records) > 1 else ""
+        if any(one.repeats for one in run.stretches):
+            yield f"map{after}", partial(residual_map, pictures, run.name)
+            if pictures.of(run.name, "tension"):
+                yield f"loops{after}", partial(loops, pictures, run.name)
+                yield f"speed{after}", partial(speeds, pictures, run.name)
+        yield f"fit{after}", partial(fit, pictures, run.name)
+
+
+def write_figures(said: Mapping[str, Any], pictures: Pictures, folder: Path) -> list[Path]:
+    """Write every figure as PNG and SVG.
+
+    Parameters
+    ----------
+    said, pictures
+        What to draw.
+    folder
+        Where; made if absent.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for name, draw in drawings(said, pictures):
+        for ending in ("png", "svg"):
+            path = folder / f"diagnose_{name}.{ending}"
+            path.write_bytes(drawn(draw, LIGHT, ending))
+            written.append(path)
+    return written
+
+
+def drawn(draw: Draw, look: Look, ending: str = "png", dpi: int = 150) -> bytes:
+    """One figure as a file's bytes."""
+    import matplotlib as mpl
+
+    buffer = BytesIO()
+    with mpl.rc_context(look.style):
+        figure = draw(look)
+        metadata = {"Date": None} if ending == "svg" else None
+        figure.savefig(buffer, format=ending, dpi=dpi, metadata=metadata)
+    return buffer.getvalue()

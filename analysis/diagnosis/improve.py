@@ -1,0 +1,126 @@
+"""The improved rig file: the causes switched on, the parameters where the fit has them."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from analysis.diagnosis.candidates import library_values
+from analysis.diagnosis.machine import RecordedMachine
+from analysis.diagnosis.nuisances import Meaning
+from analysis.engine.diagnosis import Diagnosis
+from analysis.engine.system import Setting
+from cdpr8.errors import ToolkitError
+from cdpr8.rigfile import load_rig
+from model.library.discovery import library
+
+MEASUREMENT = ("cell", "camera", "clock")
+"""Nuisances of these are kept out of the rig file: they are within what is known."""
+
+
+def write_improved(machine: RecordedMachine, diagnosis: Diagnosis, path: Path) -> Path:
+    """Write the first run's rig file with the causes in it.
+
+    Parameters
+    ----------
+    machine, diagnosis
+        What was found.
+    path
+        Where.
+
+    Raises
+    ------
+    ToolkitError
+        The file that was written does not load: a defect of this program.
+    """
+    run = machine.recordings[0].run
+    text = (run.folder / "rig.toml").read_text(encoding="utf-8")
+    data = tomllib.loads(text)
+    _move(data, machine, diagnosis)
+    for name, table in physics(machine, diagnosis).items():
+        data.setdefault("physics", {})[name] = table
+    intrinsics = data.get("camera", {}).get("intrinsics")
+    if isinstance(intrinsics, str) and (run.folder / intrinsics).is_file():
+        (path.parent / intrinsics).write_bytes((run.folder / intrinsics).read_bytes())
+    path.write_text(_HEAD.format(run=run.name) + _spell(data), encoding="utf-8")
+    load_rig(path)
+    return path
+
+
+_HEAD = """# Written by `analysis diagnose`: the rig file of {run}, with what the diagnosis found.
+# [physics.*] holds the left-out effects; parameters stand where the fit has them.
+
+"""
+
+
+def physics(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, dict[str, Any]]:
+    """The causes as tables of a rig file's [physics]."""
+    assert diagnosis.judgement is not None
+    found: dict[str, dict[str, Any]] = {}
+    for cause in diagnosis.judgement.causes:
+        setting = Setting(cause.values, cause.shapes)
+        for record in range(len(machine.recordings)):
+            own = library_values(cause.name, setting, machine.peaks_n, record, machine.frame_hz)
+            if own is None:
+                continue
+            table: dict[str, Any] = {}
+            for one in library()[cause.name].parameters:
+                if one.name in own:
+                    value = np.clip(own[one.name], one.low, one.high)
+                    table[one.name] = (
+                        [round(float(v), 9) for v in value] if np.ndim(value) else float(value)
+                    )
+            found[cause.name] = table
+            break
+    return found
+
+
+def _move(data: dict[str, Any], machine: RecordedMachine, diagnosis: Diagnosis) -> None:
+    """Stiffness, mass and pretension where the fit has them; what else moved stays as it was."""
+    assert diagnosis.judgement is not None
+    rig = machine.recordings[0].rig
+    chosen = diagnosis.judgement.chosen
+    at = diagnosis.calibrated.rotation @ chosen.weighed.nuisance
+    for sigmas, nuisance, meaning in zip(at, machine.nuisances, machine.meanings, strict=True):
+        amount = float(sigmas * nuisance.sigma)
+        if meaning.record > 0:
+            continue
+        if meaning.effect == "stiffness":
+            row = rig.cable[meaning.cable - 1].stiffness_n_per_m
+            _set(data["cable"][meaning.cable - 1], "stiffness_n_per_m", row.value * (1 + amount),
+                 row.sigma)  # fmt: skip
+        elif meaning.effect == "pretension":
+            row = rig.cable[meaning.cable - 1].pretension_n
+            _set(data["cable"][meaning.cable - 1], "pretension_n", row.value + amount, row.sigma)
+        elif meaning.effect == "mass":
+            mass = rig.platform.mass_kg
+            _set(data["platform"], "mass_kg", mass.value * (1.0 + amount), mass.sigma)
+        elif meaning.effect == "drive_amplitude":
+            _drive(data, diagnosis, meaning, amount)
+
+
+def _drive(data: dict[str, Any], diagnosis: Diagnosis, meaning: Meaning, amount: float) -> None:
+    """A drive that is a little off is an effect of the drive, not another command."""
+    assert diagnosis.judgement is not None
+    if abs(amount) > 0.0 and "drive_amplitude" not in {
+        one.name for one in diagnosis.judgement.causes
+    }:
+        data.setdefault("physics", {})[meaning.effect] = {meaning.parameter: round(amount, 9)}
+
+
+def _set(table: dict[str, Any], key: str, value: float, sigma: float) -> None:
+    table[key] = {
+        "value": round(value, 9),
+        "sigma": sigma,
+        "source": "fitted by analysis diagnose",
+    }
+
+
+def _spell(data: dict[str, Any]) -> str:
+    import tomli_w
+
+    try:
+        return tomli_w.dumps(data)
+    except TypeError as error:
+        raise ToolkitError(f"the improved rig file cannot be written: {error}") from None

@@ -1,0 +1,303 @@
+"""CDPR-8 as a system for the engine: runs of one machine, simulated as they were recorded."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.diagnosis.candidates import candidates, library_values
+from analysis.diagnosis.nuisances import Meaning, nuisances
+from analysis.diagnosis.recording import Recording
+from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
+from cdpr8.rigfile import Rig
+from model import ActiveEffect, Machine, Simulation, Task, observe, simulate_many
+from model.library.discovery import library
+from model.rest import tones_hz
+from model.simulator import run as simulate_task
+
+Array = NDArray[np.float64]
+
+OUTPUT_HZ = 500.0
+"""Rows a second: 20 times faster than what the lens looks at."""
+
+LANES_FROM = 6
+"""Fewer tasks than this are faster one by one."""
+
+GROUP = 16
+
+GUARD = 0.03
+"""Share of critical damping that keeps the platform from ringing, where that is asked for."""
+
+FAR = 1e6
+"""Where a simulation blew up, everything is this far off."""
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One run of one point: what to simulate and how to observe it."""
+
+    key: tuple[object, ...]
+    task: Task
+    seen: tuple[ActiveEffect, ...]
+    start_s: float
+    pose_zero: Array
+    late_s: Array
+
+    @property
+    def whole_key(self) -> tuple[object, ...]:
+        """Equal for jobs that are simulated and observed alike."""
+        looked = tuple((one.name, *sorted(one.values.items())) for one in self.seen)
+        return self.key, looked, self.start_s, self.pose_zero.tobytes(), self.late_s.tobytes()
+
+
+class RecordedMachine:
+    """Runs of one machine.
+
+    Parameters
+    ----------
+    recordings
+        The runs.
+    effects
+        Names of the effects to look at; None: all.
+    workers
+        Threads.
+    """
+
+    def __init__(
+        self,
+        recordings: Sequence[Recording],
+        effects: Sequence[str] | None = None,
+        workers: int = 2,
+    ) -> None:
+        self.recordings = tuple(recordings)
+        self.name = ", ".join(one.run.name for one in recordings)
+        self.bundles: tuple[Bundle, ...] = tuple(
+            bundle for one in recordings for bundle in one.bundles
+        )
+        self._known, self._meanings = nuisances(self.recordings)
+        camera = recordings[0].rig.camera
+        self.frame_hz = camera.fps if camera is not None else 16.0
+        times = [
+            (one.excitation.start_s + one.shift_s, one.excitation.end_s + one.shift_s)
+            for one in recordings
+        ]
+        posed = any(one.has_pose for one in recordings)
+        self._candidates = tuple(
+            one
+            for one in candidates(effects, times, self.frame_hz)
+            if posed or one.side not in ("camera", "clock")
+        )
+        self._workers = workers
+        self.simulated = 0
+        """Simulations run so far."""
+        self.peaks_n = [1e3] * 8
+        self.peaks_n = self._nominal_peaks()
+
+    @property
+    def nuisances(self) -> Sequence[Nuisance]:
+        """See `System`."""
+        return self._known
+
+    @property
+    def meanings(self) -> Sequence[Meaning]:
+        """What each nuisance moves."""
+        return self._meanings
+
+    @property
+    def candidates(self) -> Sequence[Candidate]:
+        """See `System`."""
+        return self._candidates
+
+    def simulate(
+        self, points: Sequence[Point], reduce: Callable[[Prediction], Any]
+    ) -> list[Any]:
+        """See `System`.
+
+        A platform without damping of its own rings on for the whole of a run, in a phase that no
+        parameter is known well enough for. What parameters and effects change is therefore taken
+        between two settled simulations, and added to that of the nominal machine as it is.
+        """
+        settled = self._predict([replace(point, settled=True) for point in points])
+        found: list[Prediction] = []
+        for point, prediction in zip(points, settled, strict=True):
+            if point.settled:
+                found.append(prediction)
+            else:
+                exact, calm = self._nominal
+                found.append(
+                    [e + p - c for e, p, c in zip(exact, prediction, calm, strict=True)]
+                )
+        return [reduce(prediction) for prediction in found]
+
+    @cached_property
+    def _nominal(self) -> tuple[Prediction, Prediction]:
+        """The nominal machine, as it is and settled."""
+        nothing = Point(np.zeros(len(self._known)))
+        exact, calm = self._predict([nothing, replace(nothing, settled=True)])
+        return exact, calm
+
+    def _predict(self, points: Sequence[Point]) -> list[Prediction]:
+        predictions: list[Prediction] = [[] for _ in points]
+        for record, recording in enumerate(self.recordings):
+            jobs = [self.job(point, record) for point in points]
+            tasks = {job.key: job.task for job in jobs}
+            done = self._solve(tasks)
+            seen: dict[tuple[object, ...], Prediction] = {}
+            for job, prediction in zip(jobs, predictions, strict=True):
+                if job.whole_key not in seen:
+                    seen[job.whole_key] = seen_by(recording, done[job.key], job)
+                prediction += seen[job.whole_key]
+        return predictions
+
+    def job(self, point: Point, record: int) -> _Job:
+        """What one run of a point is."""
+        recording = self.recordings[record]
+        values, start_s, pose_zero, late_s = self._moved(point, record)
+        active = []
+        for name in sorted(values):
+            effect = ActiveEffect(name, _within(name, values[name]))
+            if not effect.is_nothing:
+                active.append(effect)
+        inside = tuple(one for one in active if one.effect.acts.side not in _OUTSIDE)
+        outside = tuple(one for one in active if one.effect.acts.side in _OUTSIDE)
+        task = Task(
+            rig=recording.rig, excitation=recording.excitation, effects=inside, nominal=recording.rig
+        )
+        key = tuple((one.name, *sorted(one.values.items())) for one in inside)
+        return _Job(key, task, outside, start_s, pose_zero, late_s)
+
+    def _moved(
+        self, point: Point, record: int
+    ) -> tuple[dict[str, dict[str, Any]], float, Array, Array]:
+        """Effects with their numbers, start, the pose's zero and the cells' lateness."""
+        recording = self.recordings[record]
+        values: dict[str, dict[str, Any]] = {}
+        for name, setting in point.effects.items():
+            own = library_values(name, setting, self.peaks_n, record, self.frame_hz)
+            if own is not None:
+                values[name] = {
+                    key: np.array(one, dtype=float) if isinstance(one, tuple) else one
+                    for key, one in own.items()
+                }
+        start_s, pose_zero, late_s = recording.shift_s, np.zeros(6), np.zeros(8)
+        for i in np.flatnonzero(point.nuisance):
+            meaning = self._meanings[i]
+            if meaning.record not in (-1, record):
+                continue
+            amount = float(point.nuisance[i]) * self._known[i].sigma
+            if meaning.effect == "start":
+                start_s += amount
+            elif meaning.effect == "pose_zero":
+                pose_zero[meaning.axis] += amount
+            elif meaning.effect == "sampling":
+                late_s[meaning.cable - 1] += amount
+            else:
+                mine = values.setdefault(meaning.effect, _nothing(meaning.effect))
+                if meaning.cable:
+                    column = np.array(mine.get(meaning.parameter, np.zeros(8)))
+                    column[meaning.cable - 1] += amount
+                    mine[meaning.parameter] = column
+                else:
+                    mine[meaning.parameter] = mine.get(meaning.parameter, 0.0) + amount
+        if point.settled:
+            mine = values.setdefault("cable_viscous", _nothing("cable_viscous"))
+            guard = _guard(recording.rig, recording.excitation.frequency_hz)
+            mine["viscous_n_s_per_m"] = mine["viscous_n_s_per_m"] + guard
+        return values, start_s, pose_zero, late_s
+
+    def _nominal_peaks(self) -> list[float]:
+        """Highest simulated tension of each cable over all runs, N."""
+        nominal = Point(np.zeros(len(self._known)))
+        jobs = [self.job(nominal, record) for record in range(len(self.recordings))]
+        runs = [simulate_task(job.task, output_rate_hz=OUTPUT_HZ) for job in jobs]
+        highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
+        return [float(one) for one in highest]
+
+    def _solve(self, tasks: Mapping[tuple[object, ...], Task]) -> dict[Any, Simulation]:
+        self.simulated += len(tasks)
+        keys = sorted(tasks, key=str)
+        count = len(keys)
+        if count < LANES_FROM or count / self._workers < LANES_FROM:
+            size = 1
+        else:
+            size = min(GROUP, -(-count // self._workers))
+        parts = [keys[first : first + size] for first in range(0, count, size)]
+
+        def solve(part: list[Any]) -> list[Simulation]:
+            if len(part) < LANES_FROM:
+                return [simulate_task(tasks[key], output_rate_hz=OUTPUT_HZ) for key in part]
+            return simulate_many([tasks[key] for key in part], output_rate_hz=OUTPUT_HZ)
+
+        if self._workers == 1 or len(parts) == 1:
+            solved = [solve(part) for part in parts]
+        else:
+            with ThreadPoolExecutor(self._workers) as pool:
+                solved = list(pool.map(solve, parts))
+        return {
+            key: one for part, found in zip(parts, solved, strict=True)
+            for key, one in zip(part, found, strict=True)
+        }  # fmt: skip
+
+
+_OUTSIDE = ("cell", "camera", "clock")
+
+
+def seen_by(recording: Recording, simulation: Simulation, job: _Job) -> Prediction:
+    """What cells and camera would report at the samples of a run."""
+    tensions = recording.bundles[: len(recording.cables)]
+    longest = max(len(one.t_s) for one in tensions)
+    times = np.full((longest, 8), simulation.t_s[0])
+    for cable, one in zip(recording.cables, tensions, strict=True):
+        times[: len(one.t_s), cable - 1] = one.t_s - job.start_s - job.late_s[cable - 1]
+    stamps = (
+        recording.bundles[-1].t_s - job.start_s if recording.has_pose else simulation.t_s[:1]
+    )
+    seen = observe(simulation, job.seen, tension_t_s=times, pose_t_s=stamps)
+    found = [
+        _finite(seen.tension_n[: len(one.t_s), cable - 1 : cable])
+        for cable, one in zip(recording.cables, tensions, strict=True)
+    ]
+    if recording.has_pose:
+        found.append(_finite(seen.pose + job.pose_zero))
+    return found
+
+
+def _finite(values: Array) -> Array:
+    return np.clip(np.nan_to_num(values, nan=FAR, posinf=FAR, neginf=-FAR), -FAR, FAR)
+
+
+def _guard(rig: Rig, drive_hz: float) -> Array:
+    """Damping of the cables that ends the platform's ringing in some cycles, N s/m, shape (8,).
+
+    In proportion to stiffness, so that it leaves the drive's own frequency nearly alone.
+    """
+    machine = Machine.from_rig(rig)
+    tones = tones_hz(machine)
+    above = tones[tones > 1.5 * drive_hz]
+    lowest = float(above.min()) if above.size else float(tones.max())
+    return np.asarray(2.0 * GUARD / (2.0 * np.pi * lowest) * machine.stiffness)
+
+
+def _nothing(name: str) -> dict[str, Any]:
+    """An effect with all magnitudes zero, so that only what is moved acts."""
+    return {
+        one.name: np.zeros(8) if one.per_cable else 0.0
+        for one in library()[name].parameters
+        if one.magnitude
+    }
+
+
+def _within(name: str, values: Mapping[str, Any]) -> dict[str, float | tuple[float, ...]]:
+    """Clipped to the library's range, as plain numbers."""
+    found: dict[str, float | tuple[float, ...]] = {}
+    for one in library()[name].parameters:
+        if one.name in values:
+            clipped = np.clip(values[one.name], one.low, one.high)
+            found[one.name] = (
+                tuple(float(v) for v in clipped) if np.ndim(clipped) else float(clipped)
+            )
+    return found

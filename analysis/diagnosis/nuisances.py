@@ -1,0 +1,139 @@
+"""What is free throughout: the rig file's numbers within their sigma, clocks and zeros."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.diagnosis.recording import Recording
+from analysis.engine.system import Nuisance
+from cdpr8.rigfile import Rig
+
+DRIVE_SHARE = 2e-3
+"""How well the drive makes its amplitude."""
+
+START_S = 2e-4
+"""How well the start of the motion is known on the tension clock, where it was recorded."""
+
+UNKNOWN_START_S = 0.02
+"""And where it was found by correlation."""
+
+LATENCY_S = 5e-4
+"""How well the camera's stamps are on the tension clock."""
+
+CLOCK_PPM = 30.0
+"""Crystals: of the camera against the electronics, and of the drive."""
+
+SAMPLE_S = 2e-4
+"""How well a cell's sampling instants are known."""
+
+SEEN_TURN = 2e-3
+"""Base points known better than this share of their distance are taken as they are."""
+
+CELL_SHARE = 1e-3
+"""Calibration of a force cell."""
+
+CAMERA_SHARE = 1e-3
+"""Calibration of the camera."""
+
+CAMERA_AXIS_DEG = 0.1
+"""How well the camera's pose to the platform's frame is known."""
+
+POSE_ZERO_M, POSE_ZERO_RAD = 3e-4, 1e-3
+"""How well the plate's place on the platform is known."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a nuisance moves.
+
+    Parameters
+    ----------
+    effect, parameter
+        A number of the library's effect; "start" for the start of the motion, "pose_zero" for the plate's place, "sampling" for the
+        instants at which a cell is read.
+    cable
+        1 to 8, or 0.
+    record
+        The run it belongs to; -1: all.
+    axis
+        For "pose_zero".
+    """
+
+    effect: str
+    parameter: str = ""
+    cable: int = 0
+    record: int = -1
+    axis: int = 0
+
+
+def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tuple[Meaning, ...]]:
+    """The nuisances of runs of one machine, and what each moves."""
+    found: list[tuple[Nuisance, Meaning]] = []
+    rig = recordings[0].rig
+
+    def add(effect: str, parameter: str, sigma: float, unit: str, cable: int = 0) -> None:
+        if sigma > 0.0:
+            term = f"{parameter}@{cable}" if cable else parameter
+            found.append(
+                (Nuisance(f"{effect} {term}", sigma, unit, effect, term),
+                 Meaning(effect, parameter, cable))
+            )  # fmt: skip
+
+    for i, cable in enumerate(rig.cable, start=1):
+        k = cable.stiffness_n_per_m
+        add("stiffness", "stiffness_share", k.sigma / k.value, "1", i)
+        add("cell_gain", "gain_share", CELL_SHARE, "1", i)
+        found.append(
+            (Nuisance(f"sampling instant@{i}", SAMPLE_S, "s"), Meaning("sampling", cable=i))
+        )
+        length = float(np.linalg.norm(cable.base_m.value))
+        for axis in "xyz":
+            # A far base point that is a little off turns its cable by too little to be seen.
+            if cable.base_m.sigma > SEEN_TURN * length:
+                add("geometry", f"base_{axis}_m", cable.base_m.sigma, "m", i)
+            add("geometry", f"anchor_{axis}_m", cable.anchor_m.sigma, "m", i)
+    mass = rig.platform.mass_kg
+    add("mass", "mass_share", mass.sigma / mass.value, "1")
+    for axis, share in zip(("roll", "pitch", "yaw"), inertia_shares(rig), strict=True):
+        add("inertia", f"{axis}_share", share, "1")
+    for axis in "xyz":
+        add("centre_of_mass", f"centre_{axis}_m", rig.platform.centre_of_mass_m.sigma, "m")
+    add("drive_amplitude", "amplitude_share", DRIVE_SHARE, "1")
+    add("drive_frequency", "frequency_share", CLOCK_PPM * 1e-6, "1")
+    if any(one.has_pose for one in recordings):
+        add("camera_gain", "gain_share", CAMERA_SHARE, "1")
+        add("camera_latency", "latency_s", LATENCY_S, "s")
+        add("clock_drift", "drift_ppm", CLOCK_PPM, "ppm")
+        for axis in ("roll", "pitch", "yaw"):
+            add("camera_axis", f"axis_{axis}_deg", CAMERA_AXIS_DEG, "deg")
+        for axis in range(6):
+            sigma = POSE_ZERO_M if axis < 3 else POSE_ZERO_RAD
+            unit = "m" if axis < 3 else "rad"
+            found.append((Nuisance(f"pose zero {axis}", sigma, unit), Meaning("pose_zero", axis=axis)))
+    for r, one in enumerate(recordings):
+        known = one.run.start.motion_start_known
+        sigma = START_S if known else UNKNOWN_START_S
+        if one.excitation.amplitude_deg > 0.0:
+            found.append(
+                (Nuisance(f"start of {one.run.name}", sigma, "s"), Meaning("start", record=r))
+            )
+        for i, cable in enumerate(one.rig.cable, start=1):
+            row = cable.pretension_n
+            if row.sigma > 0.0:
+                found.append(
+                    (Nuisance(f"pretension of {one.run.name}@{i}", row.sigma, "N"),
+                     Meaning("pretension", "pretension_offset_n", i, r))
+                )  # fmt: skip
+    columns = list(zip(*found, strict=True))
+    return tuple(columns[0]), tuple(columns[1])
+
+
+def inertia_shares(rig: Rig) -> tuple[float, float, float]:
+    """Relative sigma of the three moments of inertia."""
+    row = rig.platform.inertia_kg_m2
+    value = np.asarray(row.value, dtype=float)
+    principal = np.diag(value) if value.ndim == 2 else value
+    # A sigma that is a share of the largest is that share of each.
+    share = row.sigma / float(principal.max())
+    return (share, share, share)

@@ -1,0 +1,158 @@
+"""The arrays of the figures, made of a diagnosis by simulating before and after once more."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analysis.diagnosis.pictures import Array, Channel, Pictures, Record, Stretch
+
+if TYPE_CHECKING:
+    from analysis.diagnosis.machine import RecordedMachine
+    from analysis.engine.diagnosis import Diagnosis
+    from analysis.engine.system import Point
+
+
+def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
+    """Simulate before and after once more, and keep what the figures draw.
+
+    Parameters
+    ----------
+    machine, diagnosis
+        What was found.
+    """
+    from analysis.engine.system import Point
+
+    judgement, search = diagnosis.judgement, diagnosis.search
+    problem = diagnosis.calibrated.problem
+    if judgement is None or search is None:
+        before = after = Point(diagnosis.calibrated.at)
+        left = (problem.residual, problem.residual)
+    else:
+        before, after = search.null.point, judgement.chosen.point
+        left = (search.null.problem.residual, judgement.chosen.problem.residual)
+    lines = [_harmonics(machine, problem.labels, one) for one in left]
+    records, channels = [], []
+    first = 0
+    for place, recording in enumerate(machine.recordings):
+        shown, plain = _seen(machine, before, place)
+        better, cables = _seen(machine, after, place)
+        excitation = recording.excitation
+        records.append(
+            Record(
+                recording.run.name,
+                excitation.start_s + recording.shift_s,
+                excitation.frequency_hz,
+                excitation.axis,
+                _stretches(recording.bundles),
+                _peaks(machine, place),
+            )
+        )
+        for b, bundle in enumerate(recording.bundles):
+            for c, name in enumerate(bundle.names):
+                cable = recording.cables[b] if bundle.kind == "tension" else 0
+                stiffness = recording.rig.cable[cable - 1].stiffness_n_per_m.value if cable else 0.0
+                state = [plain[0][b], cables[0][b], cables[1][b]] if cable else [np.zeros(0)] * 3
+                channels.append(
+                    Channel(
+                        record=bundle.record,
+                        kind=bundle.kind,
+                        name=name,
+                        unit=bundle.units[c],
+                        noise=float(np.sqrt(bundle.covariance[c, c])),
+                        cable=cable,
+                        stiffness_n_per_m=stiffness,
+                        t_s=bundle.t_s,
+                        recorded=bundle.value[:, c],
+                        before=shown[b][:, c],
+                        after=better[b][:, c],
+                        elongation_before_m=state[0],
+                        elongation_m=state[1],
+                        rate_m_per_s=state[2],
+                        harmonics_before=lines[0][first + b][c],
+                        harmonics_after=lines[1][first + b][c],
+                    )
+                )
+        first += len(recording.bundles)
+    named = judgement is not None and bool(judgement.chosen.hypothesis.parts)
+    return Pictures(tuple(records), tuple(channels), named)
+
+
+def _seen(
+    machine: "RecordedMachine", point: "Point", place: int
+) -> tuple[list[Array], tuple[list[Array], list[Array]]]:
+    """What would be recorded at a point, and elongation and rate of the cables, by bundle."""
+    from analysis.diagnosis.machine import OUTPUT_HZ, seen_by
+    from model.simulator import run
+
+    recording = machine.recordings[place]
+    job = machine.job(point, place)
+    simulation = run(job.task, output_rate_hz=OUTPUT_HZ)
+    elongation: list[Array] = []
+    rate: list[Array] = []
+    for cable, bundle in zip(recording.cables, recording.bundles, strict=False):
+        t_s = bundle.t_s - job.start_s
+        for kept, all_ in (
+            (elongation, simulation.elongation_m),
+            (rate, simulation.axial_velocity_m_per_s),
+        ):
+            kept.append(np.interp(t_s, simulation.t_s, all_[:, cable - 1]))
+    return seen_by(recording, simulation, job), (elongation, rate)
+
+
+def _peaks(machine: "RecordedMachine", place: int) -> tuple[float, float, float] | None:
+    """See `Record.peaks_deg`."""
+    from analysis.diagnosis.machine import OUTPUT_HZ, seen_by
+    from analysis.engine.system import Point
+    from model.simulator import run
+
+    recording = machine.recordings[place]
+    name = f"{recording.excitation.axis}_deg"
+    if not recording.has_pose or name not in recording.bundles[-1].names:
+        return None
+    bundle = recording.bundles[-1]
+    column = bundle.names.index(name)
+    job = machine.job(Point(np.zeros(len(machine.nuisances))), place)
+    simulation = run(job.task, output_rate_hz=OUTPUT_HZ)
+    inside = np.zeros(len(bundle.t_s), dtype=bool)
+    fine = np.zeros(len(simulation.t_s), dtype=bool)
+    for one in _stretches(recording.bundles):
+        if one.repeats:
+            inside |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
+            fine |= (simulation.t_s + job.start_s >= one.start_s) & (
+                simulation.t_s + job.start_s < one.end_s
+            )
+    if not inside.any() or not fine.any():
+        return None
+    at_rest = bundle.t_s < recording.excitation.start_s + recording.shift_s
+    recorded = bundle.value[:, column]
+    recorded = recorded - (recorded[at_rest].mean() if at_rest.any() else recorded[inside].mean())
+    framed = seen_by(recording, simulation, job)[-1][:, column]
+    peaks = [
+        np.abs(simulation.pose[fine, column]),
+        np.abs(framed[inside]),
+        np.abs(recorded[inside]),
+    ]
+    values = [float(np.rad2deg(one.max())) for one in peaks]
+    return values[0], values[1], values[2]
+
+
+def _stretches(bundles: Sequence[Any]) -> tuple[Stretch, ...]:
+    return tuple(
+        Stretch(s.name, s.start_s, s.end_s, s.held_out, s.fundamental_hz is not None)
+        for s in bundles[0].segments
+    )
+
+
+def _harmonics(machine: "RecordedMachine", labels: Any, residual: Array) -> list[list[Array]]:
+    """Rms residual at each harmonic, in units of noise: bundle -> channel -> shape (h,)."""
+    found = []
+    for b, bundle in enumerate(machine.bundles):
+        rows = []
+        for c in range(len(bundle.names)):
+            own = (labels.bundle == b) & (labels.channel == c) & ~labels.free & (labels.order == 0)
+            line = np.round(labels.line[own]).astype(int)
+            power = np.bincount(line, residual[own] ** 2)
+            rows.append(np.sqrt(power / np.maximum(np.bincount(line), 1)))
+        found.append(rows)
+    return found

@@ -1,0 +1,288 @@
+"""A run as the engine sees it: bundles of channels with times, noise and stretches of time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.system import Bundle, Segment
+from analysis.series import measured_cables
+from cdpr8.errors import DataError
+from cdpr8.rigfile import Rig
+from cdpr8.rigfile.schema import Excitation
+from cdpr8.runfolder import POSE_AXES, FrameFlag, Run
+from model import Machine
+from model.rest import tones_hz
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+MOST_HZ = 250.0
+"""Faster tensions are averaged in blocks down to about this; nothing here is faster than 30 Hz."""
+
+LINES_HZ = 25.0
+"""Of stretches that do not repeat, lines up to here."""
+
+LEAST_REST = 20
+"""Samples at rest that a noise level needs."""
+
+LEAST_NOISE_N = 2e-4
+"""Below this the resolution of the electronics is the noise."""
+
+LEAST_NOISE_M, LEAST_NOISE_RAD = 1e-6, 1e-6
+
+HELD_SHARE = 0.3
+"""Of the steady cycles, kept back."""
+
+LEAST_PERIODS = 6
+"""Fewer steady periods than this are not split."""
+
+BASE_SHARE = 3e-4
+"""What two good simulators of the same equations differ by, as a share of the variation."""
+
+_DEGREES = np.array([1.0, 1.0, 1.0, *[np.pi / 180.0] * 3])
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One run, ready for the engine.
+
+    Attributes
+    ----------
+    run
+        As loaded.
+    excitation
+        What was commanded.
+    shift_s
+        How much later than it says the motion started; 0 where the run knows.
+    cables
+        Cables with samples.
+    bundles
+        The tensions of these, one bundle each, and then the pose where there is one.
+    has_pose
+        Whether the last bundle is the pose.
+    notes
+        What a reader must know.
+    """
+
+    run: Run
+    excitation: Excitation
+    shift_s: float
+    cables: tuple[int, ...]
+    bundles: tuple[Bundle, ...]
+    has_pose: bool
+    notes: tuple[str, ...]
+
+    @property
+    def rig(self) -> Rig:
+        """The machine as the run has it."""
+        return self.run.rig
+
+
+def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Recording:
+    """Make bundles of a run.
+
+    Parameters
+    ----------
+    run
+        The run.
+    pose
+        Columns of pose.csv; None: there is none, and tensions have to do.
+    shift_s
+        How much later than it says the motion started.
+
+    Raises
+    ------
+    DataError
+        Nothing usable was measured.
+    """
+    excitation = run.start.excitation
+    cables = measured_cables(run)
+    if not cables:
+        raise DataError("no cable has usable tension samples", where=str(run.folder))
+    notes: list[str] = []
+    bundles = [_tension(run, cable, excitation, shift_s, notes) for cable in cables]
+    seen = None if pose is None else _pose(run, pose, excitation, shift_s, notes)
+    if seen is not None:
+        bundles.append(seen)
+    else:
+        notes.append("no pose: cameras and clocks cannot be told from what the platform does")
+    lost = [str(c) for c in range(1, len(run.rig.cable) + 1) if c not in cables]
+    if lost:
+        notes.append(f"no usable tension of cable {', '.join(lost)}")
+    return Recording(run, excitation, shift_s, cables, tuple(bundles), seen is not None, tuple(notes))
+
+
+def segments(
+    excitation: Excitation, shift_s: float, first_s: float, last_s: float
+) -> tuple[Segment, ...]:
+    """Rest, onset, steady motion (used and kept back), stop and what follows."""
+    if excitation.amplitude_deg == 0.0:
+        return (Segment(first_s, last_s + 1e-9, None, LINES_HZ, name="whole"),)
+    start, end = excitation.start_s + shift_s, excitation.end_s + shift_s
+    steady = (start + excitation.ramp_s, min(end - excitation.ramp_s, last_s + 1e-9))
+    found: list[Segment] = []
+
+    def free(a: float, b: float, name: str) -> None:
+        a, b = max(a, first_s), min(b, last_s + 1e-9)
+        if b - a > 0.05:
+            found.append(Segment(a, b, None, LINES_HZ, name=name))
+
+    free(first_s, start, "rest")
+    free(start, steady[0], "onset")
+    frequency = excitation.frequency_hz
+    periods = int((steady[1] - steady[0]) * frequency + 1e-6)
+    if periods >= LEAST_PERIODS:
+        middle = steady[0] + round(periods * (1.0 - HELD_SHARE)) / frequency
+        found.append(Segment(steady[0], middle, frequency, name="steady"))
+        found.append(Segment(middle, steady[1], frequency, held_out=True, name="steady, held out"))
+    elif periods >= 2:
+        found.append(Segment(*steady, frequency, name="steady"))
+    else:
+        free(*steady, "steady")
+    free(steady[1], end, "stop")
+    free(end, last_s + 1.0, "after")
+    return tuple(found)
+
+
+def _tension(
+    run: Run, cable: int, excitation: Excitation, shift_s: float, notes: list[str]
+) -> Bundle:
+    good = run.cable_tension(cable)
+    t_s = good["t_s"].to_numpy(dtype=float)
+    value = good["tension_n"].to_numpy(dtype=float)
+    keep = np.concatenate([[True], np.diff(t_s) > 0.0])
+    t_s, value = t_s[keep], value[keep]
+    interval = float(np.median(np.diff(t_s)))
+    block = max(int(1.0 / (interval * MOST_HZ)), 1)
+    if block > 1:
+        whole = len(t_s) // block * block
+        t_s = t_s[:whole].reshape(-1, block).mean(axis=1)
+        value = value[:whole].reshape(-1, block).mean(axis=1)
+    sigma, known = _noise(t_s, value, excitation, shift_s, run)
+    if not known:
+        notes.append(f"cable {cable}: no rest to take the noise from; {sigma:.4f} N is an estimate")
+    return Bundle(
+        names=(f"tension {cable}",),
+        units=("N",),
+        t_s=t_s,
+        value=value[:, None],
+        covariance=np.array([[max(sigma, LEAST_NOISE_N) ** 2]]),
+        segments=segments(excitation, shift_s, float(t_s[0]), float(t_s[-1])),
+        record=run.name,
+        kind="tension",
+        base_share=BASE_SHARE,
+        tones_hz=tuple(tones_hz(Machine.from_rig(run.rig))),
+    )
+
+
+def _noise(
+    t_s: Array, value: Array, excitation: Excitation, shift_s: float, run: Run
+) -> tuple[float, bool]:
+    """Standard deviation of a sample at rest, and whether there was rest to take it from."""
+    at_rest = t_s < excitation.start_s + shift_s - 0.02
+    if excitation.amplitude_deg == 0.0:
+        at_rest[:] = True
+    if run.start.motion_start_known and np.count_nonzero(at_rest) >= LEAST_REST:
+        return _about_line(t_s[at_rest], value[at_rest]), True
+    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
+    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5)), False
+
+
+def _about_line(t_s: Array, value: Array) -> float:
+    """About a straight line, outliers aside."""
+    line = np.polynomial.Polynomial.fit(t_s, value, 1)(t_s)
+    rest = value - line
+    typical = 1.4826 * np.median(np.abs(rest - np.median(rest)))
+    spread = float(rest.std(ddof=2))
+    return spread if spread < 2.0 * typical or typical == 0.0 else float(typical)
+
+
+def _pose(
+    run: Run, pose: "pd.DataFrame", excitation: Excitation, shift_s: float, notes: list[str]
+) -> Bundle | None:
+    names = [f"{axis}_m" for axis in "xyz"] + [f"{axis}_deg" for axis in ("roll", "pitch", "yaw")]
+    flags = pose["flags"].fillna(0).to_numpy(dtype=int)
+    good = pose[names].notna().all(axis=1).to_numpy()
+    good = good & ((flags & int(FrameFlag.REPEATED | FrameFlag.BLACK | FrameFlag.NO_MARKER)) == 0)
+    seen = pose[good].sort_values("t_s", kind="stable")
+    if len(seen) < LEAST_REST:
+        notes.append(f"{len(seen)} usable poses are too few")
+        return None
+    t_s = seen["t_s"].to_numpy(dtype=float)
+    value = seen[names].to_numpy(dtype=float) * _DEGREES
+    # An angle that passes 180 deg comes back at -180.
+    value[:, 3:] = np.unwrap(value[:, 3:], axis=0)
+    covariance = _stated(seen) * np.outer(_DEGREES, _DEGREES)
+    at_rest = t_s < excitation.start_s + shift_s - 0.02
+    if excitation.amplitude_deg == 0.0:
+        at_rest[:] = True
+    if run.start.motion_start_known and np.count_nonzero(at_rest) >= 10:
+        spread = np.array([_about_line(t_s[at_rest], column) for column in value[at_rest].T])
+        stated = np.sqrt(np.diag(covariance))
+        if not np.isfinite(stated).all() or (stated == 0.0).any():
+            covariance = np.diag(spread**2)
+        else:
+            # What a dozen frames say of their spread is sure to a quarter.
+            factor = np.where(spread > 1.5 * stated, spread / stated, 1.0)
+            covariance = covariance * np.outer(factor, factor)
+            if (factor > 1.0).any():
+                wide = [POSE_AXES[i] for i in np.flatnonzero(factor > 1.0)]
+                notes.append(
+                    f"poses at rest spread more than pose.csv states ({', '.join(wide)}): the "
+                    "spread is taken"
+                )
+    elif not np.isfinite(covariance).all():
+        spread = np.array([_bend(column) for column in value.T])
+        covariance = np.diag(spread**2)
+        notes.append("pose.csv states no sigma and there was no rest: the noise is an estimate")
+    floor = np.array([LEAST_NOISE_M] * 3 + [LEAST_NOISE_RAD] * 3)
+    covariance = covariance + np.diag(floor**2)
+    return Bundle(
+        names=tuple(POSE_AXES),
+        units=("m", "m", "m", "rad", "rad", "rad"),
+        t_s=t_s,
+        value=value,
+        covariance=covariance,
+        segments=segments(excitation, shift_s, float(t_s[0]), float(t_s[-1])),
+        record=run.name,
+        kind="pose",
+        base_share=BASE_SHARE,
+        tones_hz=tuple(tones_hz(Machine.from_rig(run.rig))),
+    )
+
+
+def _bend(value: Array) -> float:
+    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
+    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5))
+
+
+def _stated(seen: "pd.DataFrame") -> Array:
+    """Median covariance of the poses as pose.csv states it, in m and deg, shape (6, 6)."""
+    axes = ("x", "y", "z", "roll", "pitch", "yaw")
+    units = ("m", "m", "m", "deg", "deg", "deg")
+    sigma = np.array(
+        [np.median(seen[f"sigma_{a}_{u}"].to_numpy(dtype=float)) for a, u in zip(axes, units, strict=True)]
+    )
+    correlation = np.eye(6)
+    for i, a in enumerate(axes):
+        for k in range(i + 1, 6):
+            name = f"corr_{a}_{axes[k]}"
+            if name in seen:
+                value = float(np.median(np.nan_to_num(seen[name].to_numpy(dtype=float))))
+                correlation[i, k] = correlation[k, i] = value
+    # Medians of entries need not be a correlation: what is left of it is.
+    values, vectors = np.linalg.eigh(correlation)
+    correlation = vectors @ np.diag(np.maximum(values, 1e-3)) @ vectors.T
+    scale = np.sqrt(np.diag(correlation))
+    correlation /= np.outer(scale, scale)
+    return np.asarray(correlation * np.outer(sigma, sigma))
+
+
+def names_of(recordings: Sequence[Recording]) -> str:
+    """Their names in words."""
+    return ", ".join(one.run.name for one in recordings)

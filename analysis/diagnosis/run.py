@@ -1,0 +1,127 @@
+"""`diagnose_runs`: from run folders to a diagnosis, its statement and an improved rig file."""
+
+import json
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from analysis.diagnosis.improve import write_improved
+from analysis.diagnosis.machine import RecordedMachine
+from analysis.diagnosis.prepare import prepare
+from analysis.diagnosis.recording import Recording
+from analysis.diagnosis.statement import statement
+from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
+from analysis.engine.search import Tell
+from cdpr8.rigfile import Rig
+
+RESULT = "diagnose.json"
+
+
+@dataclass(frozen=True)
+class RunDiagnosis:
+    """A diagnosis of runs.
+
+    Attributes
+    ----------
+    machine
+        The runs as a system.
+    diagnosis
+        What the engine found.
+    statement
+        The same as the JSON of design, section 6.
+    improved
+        Where the improved rig file was written; None: there was nothing to improve.
+    """
+
+    machine: RecordedMachine
+    diagnosis: Diagnosis
+    statement: dict[str, Any]
+    improved: Path | None
+
+    @property
+    def recordings(self) -> tuple[Recording, ...]:
+        """The runs."""
+        return self.machine.recordings
+
+
+def diagnose_recordings(
+    recordings: Sequence[Recording],
+    *,
+    results: Path | None = None,
+    effects: Sequence[str] | None = None,
+    stop_after: Stage | None = None,
+    workers: int = 2,
+    tell: Tell | None = None,
+) -> RunDiagnosis:
+    """Diagnose runs of one machine.
+
+    Parameters
+    ----------
+    recordings
+        The runs.
+    results
+        Folder that takes `diagnose.json` and `improved.toml`; None: nothing is written.
+    effects
+        Names of the effects to consider; None: all.
+    stop_after
+        See `analysis.engine.diagnose`.
+    workers
+        Threads.
+    tell
+        Told of progress.
+    """
+    with one_thread_each():
+        machine = RecordedMachine(recordings, effects, workers)
+        diagnosis = diagnose(machine, stop_after=stop_after, tell=tell)
+    said = statement(machine, diagnosis)
+    improved = None
+    if results is not None:
+        results.mkdir(parents=True, exist_ok=True)
+        if diagnosis.judgement is not None and diagnosis.judgement.causes:
+            improved = write_improved(machine, diagnosis, results / "improved.toml")
+            said["improved_rig"] = str(improved)
+        (results / RESULT).write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
+    return RunDiagnosis(machine, diagnosis, said, improved)
+
+
+def diagnose_runs(
+    folders: Sequence[Path],
+    *,
+    results: Path | None = None,
+    seed: int = 0,
+    rig: Rig | None = None,
+    workers: int = 2,
+) -> dict[str, Any]:
+    """Diagnose run folders of one machine.
+
+    Parameters
+    ----------
+    folders
+        Run folders.
+    results
+        Folder that takes what is written; None: nothing is.
+    seed
+        Unused so far: nothing here is drawn.
+    rig
+        The machine, where it is not the runs' own.
+    workers
+        Threads.
+
+    Returns
+    -------
+    dict
+        The JSON of design, section 6.
+    """
+    del seed
+    recordings = prepare(folders, rig=rig)
+    return diagnose_recordings(recordings, results=results, workers=workers).statement
+
+
+def one_thread_each() -> AbstractContextManager[object]:
+    """Small matrices are slower on many threads, and slowest where those are wanted elsewhere."""
+    from threadpoolctl import threadpool_limits
+
+    limits: AbstractContextManager[object] = threadpool_limits(1)
+    return limits

@@ -1,0 +1,87 @@
+"""The form of `diagnose.json` (design, section 6), from which its JSON Schema is made."""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Verdict = Literal["none", "parameter", "explained", "ambiguous", "unexplained", "not asked"]
+
+Side = Literal["plant", "parameter", "drive", "cell", "camera", "clock"]
+
+
+class Open(BaseModel):
+    """Keys beside those named here are allowed: a reader must pass over them."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class Where(Open):
+    """Where a cause acts."""
+
+    side: Side
+    cables: list[int] = Field(description="1 to 8; empty where there is no choice")
+    when: str
+    harmonics: list[int]
+
+
+class Parameter(Open):
+    """One number of a cause."""
+
+    value: float = Field(description="the mean, where cables differ")
+    sigma: float = Field(ge=0.0)
+    cables: dict[str, float] | None = None
+
+
+class Cause(Open):
+    """One cause of the mismatch."""
+
+    effect: str
+    probability: float = Field(ge=0.0, le=1.0)
+    where: Where
+    parameters: dict[str, Parameter]
+    indistinguishable_from: list[str]
+
+
+class Remains(Open):
+    """What is left when the causes are in."""
+
+    significant: bool
+    where: str | None
+
+
+class Parts(Open):
+    """Rms of the residual over the noise, by kind of channel."""
+
+    used: dict[str, float]
+    held_out: dict[str, float]
+
+
+class Fit(Open):
+    """The fit before and after, beside the noise."""
+
+    noise: dict[str, Any]
+    before: Parts
+    after: Parts
+
+
+class Experiment(Open):
+    """The cheapest next experiment."""
+
+    what: str
+    separates: list[str]
+
+
+class Statement(Open):
+    """A diagnosis."""
+
+    verdict: Verdict
+    causes: list[Cause]
+    remains: Remains
+    fit: Fit
+    next_experiment: Experiment | None
+    improved_rig: str | None
+
+
+def statement_schema() -> dict[str, Any]:
+    """The JSON Schema of `diagnose.json` and of what `--json` prints."""
+    return Statement.model_json_schema()

@@ -1,0 +1,186 @@
+"""A diagnosis as the JSON of design, section 6."""
+
+import re
+from math import hypot
+from typing import Any
+
+from analysis.diagnosis.candidates import PAIRS
+from analysis.diagnosis.machine import RecordedMachine
+from analysis.engine.confirm import Confirmation
+from analysis.engine.diagnosis import Diagnosis
+from analysis.engine.judge import Cause
+from analysis.engine.locate import Finding
+
+WHEN = {
+    "pulley_coulomb": "velocity reversal",
+    "pulley_capstan": "velocity reversal, more at high tension",
+    "pulley_stribeck": "velocity reversal",
+    "pulley_presliding": "after velocity reversal",
+    "anchor_play": "after reversal of the force",
+    "drive_backlash": "after reversal of the drive",
+    "cable_slack": "low tension",
+    "cell_saturation": "high tension",
+    "frames_dropped": "from one frame on",
+    "cable_creep": "slowly, over the run",
+    "cell_drift": "slowly, over the run",
+    "clock_drift": "growing over the run",
+    "drive_frequency": "growing over the run",
+}
+
+SHOWN_SHARE = 0.1
+"""A cable whose magnitude is less than this, of the largest, is not among those named."""
+
+SHOWN_SIGMAS = 2.0
+
+
+def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
+    """The JSON of design, section 6, as a dictionary."""
+    sides = {one.name: one.side for one in machine.candidates}
+    judgement, remains = diagnosis.judgement, diagnosis.remains
+    causes = [] if judgement is None else [_cause(one, sides, machine) for one in judgement.causes]
+    said: dict[str, Any] = {
+        "verdict": diagnosis.verdict or "not asked",
+        "causes": causes,
+        "remains": {
+            "significant": bool(remains and remains.significant),
+            "where": where(remains.findings) if remains and remains.significant else None,
+            "misfit": None if remains is None else remains.misfit,
+        },
+        "fit": _fit(machine, diagnosis.confirmation),
+        "located": [_finding(one) for one in diagnosis.findings],
+        "parameters": moved_parameters(machine, diagnosis),
+        "next_experiment": None,
+        "improved_rig": None,
+        "notes": [f"{one.run.name}: {note}" for one in machine.recordings for note in one.notes],
+    }
+    return said
+
+
+def cables_of(cause: Cause) -> list[int]:
+    """Cables where it acts: those whose magnitude stands out of its uncertainty; none: no choice."""
+    places = {term: re.fullmatch(r".*@(\d+)", term) for term in cause.values}
+    largest = max((abs(v) for v in cause.values.values()), default=0.0)
+    found = set()
+    for term, match in places.items():
+        if match is None:
+            continue
+        value, sigma = abs(cause.values[term]), cause.sigmas.get(term, 0.0)
+        if value > SHOWN_SHARE * largest and value > SHOWN_SIGMAS * sigma:
+            found.add(int(match.group(1)))
+    return sorted(found)
+
+
+def _cause(cause: Cause, sides: dict[str, str], machine: RecordedMachine) -> dict[str, Any]:
+    cables = cables_of(cause)
+    if cause.name == "cell_swapped":
+        cables = list(PAIRS[round(cause.shapes.get("pair", 0.0))])
+    return {
+        "effect": cause.name,
+        "probability": cause.probability,
+        "present": cause.present,
+        "where": {
+            "side": sides[cause.name],
+            "cables": cables,
+            "when": WHEN.get(cause.name, "throughout the motion"),
+            "harmonics": [],
+        },
+        "parameters": _parameters(cause, machine),
+        "indistinguishable_from": [one.name for one in cause.rivals],
+        "rivals": [{"effect": one.name, "probability": one.probability} for one in cause.rivals],
+        "implausible": list(cause.at_limit),
+    }
+
+
+def _parameters(cause: Cause, machine: RecordedMachine) -> dict[str, Any]:
+    candidate = next(one for one in machine.candidates if one.name == cause.name)
+    found: dict[str, Any] = {}
+    for term in candidate.terms:
+        if term.name not in cause.values:
+            continue
+        value, sigma = cause.values[term.name], cause.sigmas.get(term.name, 0.0)
+        entry = found.setdefault(term.parameter, {"values": [], "sigmas": [], "unit": term.unit})
+        entry["values"].append(value)
+        entry["sigmas"].append(sigma)
+        if term.place:
+            entry.setdefault("cables", {})[term.place] = value
+            entry.setdefault("sigma_cables", {})[term.place] = sigma
+    for entry in found.values():
+        values, sigmas = entry.pop("values"), entry.pop("sigmas")
+        entry["value"] = sum(values) / len(values)
+        entry["sigma"] = sum(sigmas) / len(sigmas)
+        if cause.name == "drive_harmonic":
+            entry["value"] = hypot(*values)
+    for name, value in cause.shapes.items():
+        shape = next((one for one in candidate.shapes if one.name == name), None)
+        if shape is None:
+            continue
+        sigma = cause.shape_sigmas.get(name, 0.0)
+        found[name] = {
+            "value": value,
+            "sigma": sigma * value if shape.logarithmic else sigma,
+            "unit": shape.unit,
+        }
+    return found
+
+
+def _fit(machine: RecordedMachine, proof: Confirmation | None) -> dict[str, Any]:
+    noise: dict[str, Any] = {}
+    for bundle in machine.bundles:
+        for i, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
+            value = float(bundle.covariance[i, i]) ** 0.5
+            noise.setdefault(bundle.record, {})[name] = {"sigma": value, "unit": unit}
+    if proof is None:
+        return {"noise": noise, "before": {}, "after": {}}
+    return {
+        "noise": noise,
+        "before": {part: dict(kinds) for part, kinds in proof.before.items()},
+        "after": {part: dict(kinds) for part, kinds in proof.after.items()},
+        "unit": "rms of the residual over the noise of a sample",
+        "held_record": proof.held_record,
+    }
+
+
+def _finding(one: Finding) -> dict[str, Any]:
+    return {
+        "run": one.record,
+        "channel": one.channel,
+        "segment": one.segment,
+        "line": one.line,
+        "slow": one.slow,
+        "in_phase": one.in_phase,
+        "quadrature": one.quadrature,
+        "unit": one.unit,
+        "sigmas": one.sigmas,
+        "significance": one.significance,
+    }
+
+
+def where(findings: tuple[Finding, ...]) -> str | None:
+    """The strongest places in words."""
+    if not findings:
+        return None
+    seen = dict.fromkeys(
+        f"{one.channel}, {one.segment}, line {one.line:.3g}" for one in findings[:4]
+    )
+    return "; ".join(seen)
+
+
+def moved_parameters(machine: RecordedMachine, diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """The parameters that moved, the farthest first: what was nominal, and by how many sigmas."""
+    if diagnosis.judgement is None or diagnosis.search is None:
+        at = diagnosis.calibrated.at
+    else:
+        chosen = diagnosis.judgement.chosen
+        at = diagnosis.calibrated.rotation @ chosen.weighed.nuisance
+    found = []
+    for nuisance, sigmas in zip(machine.nuisances, at, strict=True):
+        if abs(sigmas) > 0.5:
+            found.append(
+                {
+                    "parameter": nuisance.name,
+                    "moved": float(sigmas * nuisance.sigma),
+                    "unit": nuisance.unit,
+                    "sigmas": float(sigmas),
+                }
+            )
+    return sorted(found, key=lambda one: -abs(one["sigmas"]))[:12]

@@ -1,0 +1,302 @@
+"""A diagnosis in words that a student understands, with numbers and their uncertainty.
+
+Everything is told from the statement (`diagnose.json`) alone, so that a page can be made again
+without diagnosing again.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import log
+from typing import Any
+
+from analysis.diagnosis.candidates import FRICTIONS
+from analysis.diagnosis.phrases import phrase
+from analysis.diagnosis.spelling import listed, odds, percent, sentence
+from analysis.diagnosis.titles import parameter_name, short
+
+TOLD_RIVALS = 4
+"""Rivals that are named in a sentence."""
+
+FAR_FROM_NOISE = 3.0
+"""A simulation that misses by more than this, in units of noise, is not told of as if it fitted."""
+
+MOVED_SIGMAS = 2.0
+"""A parameter that moved further than this is told."""
+
+KINDS = {"tension": "tensions", "pose": "poses"}
+
+Statement = Mapping[str, Any]
+
+
+def paragraph(said: Statement) -> str:
+    """What was found, in one paragraph."""
+    return " ".join([headline(said), *(_cause(one) for one in said["causes"]),
+                     *_laws_of_one_thing(said), *_improvement(said), *_remains(said)])  # fmt: skip
+
+
+def sections(said: Statement) -> list[tuple[str, str]]:
+    """The paragraph and what belongs beside it: (heading, text), those with nothing left out."""
+    found = [
+        ("What was found", paragraph(said)),
+        ("What was ruled out", ruled_out(said)),
+        ("The paper's own guesses", guesses(said)),
+        ("What would change this verdict", change(said)),
+    ]
+    return [(heading, text) for heading, text in found if text]
+
+
+def headline(said: Statement) -> str:
+    """The verdict in one sentence."""
+    causes = said["causes"]
+    names = listed([short(one["effect"]) for one in causes])
+    verdict = said["verdict"]
+    if verdict == "none":
+        return (
+            "Nothing was left out that these runs show: simulation and recording agree once the "
+            "rig file's numbers move within what is known of them."
+        )
+    if verdict == "parameter":
+        return (
+            f"A number of the rig file is wrong, not the physics: {names}. Moved by more than its "
+            "stated uncertainty allows, it removes the mismatch."
+        )
+    if verdict == "explained":
+        how = "comes nearer" if _far_from_noise(said) else "follows"
+        return f"The simulation left out {names}, and with {_it(causes)} it {how} the recording."
+    if verdict == "ambiguous":
+        return (
+            "Something was left out, and these runs cannot settle what it is: "
+            f"{listed([_set(one) for one in causes], 'and beside it')}."
+        )
+    if verdict == "unexplained":
+        return (
+            "The simulation does not follow the recording, and nothing in the library of effects "
+            "says why."
+        )
+    return (
+        f"Recording and simulation differ in {len(said['located'])} places beyond the noise; "
+        "causes were not asked for."
+        if said["located"]
+        else "Nowhere do recording and simulation differ beyond the noise."
+    )
+
+
+def _it(causes: Sequence[Statement]) -> str:
+    return "it" if len(causes) == 1 else "them"
+
+
+def _set(cause: Statement) -> str:
+    names = [cause["effect"], *cause["indistinguishable_from"]]
+    return listed([short(one) for one in names], "or")
+
+
+def _cause(cause: Statement) -> str:
+    text = phrase(cause)
+    where = cause["where"]
+    rivals = cause.get("rivals", [])
+    if rivals:
+        others = [
+            f"{short(one['effect'])} ({percent(one['probability'])})"
+            for one in rivals[:TOLD_RIVALS]
+        ]
+        more = f" and {len(rivals) - TOLD_RIVALS} more" if len(rivals) > TOLD_RIVALS else ""
+        text = (
+            f"If it is {short(cause['effect'])} ({percent(cause['probability'])}): "
+            f"{text[0].lower()}{text[1:]} The same recording could come from "
+            f"{listed(others, 'or')}{more}."
+        )
+    else:
+        text += f" The probability that it is this is {percent(cause['probability'])}."
+    if where.get("when") and where["when"] != "throughout the motion":
+        text += f" It shows {_when(where['when'])}."
+    if cause.get("implausible"):
+        text += (
+            f" Beware: {listed(cause['implausible'])} came out at the edge of the plausible range, "
+            "so the law may be another one than this."
+        )
+    return text
+
+
+def _when(words: str) -> str:
+    first = words.split(maxsplit=1)[0]
+    return words if first in ("after", "slowly,", "growing", "from") else f"at {words}"
+
+
+def _laws_of_one_thing(said: Statement) -> list[str]:
+    """Two laws of friction found together are one friction that is neither."""
+    rubbing = [one for one in said["causes"] if one["effect"] in FRICTIONS]
+    rubbing = [one for one in rubbing if "coulomb_n" in one["parameters"]]
+    if len(rubbing) < 2:
+        return []
+    total = friction_of_cables(said)
+    parts = [f"{value:.2f} N in cable {cable}" for cable, value in sorted(total.items())]
+    return [
+        "These are laws of one thing: the true friction is rather one law that is neither. "
+        f"Together, well away from reversal, they make {listed(parts)}."
+    ]
+
+
+def friction_of_cables(said: Statement) -> dict[int, float]:
+    """Friction of each cable while it slides, all laws of it together, N."""
+    total: dict[int, float] = {}
+    for cause in said["causes"]:
+        if cause["effect"] in FRICTIONS:
+            for cable, value in cause["parameters"].get("coulomb_n", {}).get("cables", {}).items():
+                total[int(cable)] = total.get(int(cable), 0.0) + float(value)
+    return total
+
+
+def _improvement(said: Statement) -> list[str]:
+    before, after = said["fit"].get("before", {}), said["fit"].get("after", {})
+    if not said["causes"]:
+        kinds = before.get("held_out") or before.get("used") or {}
+        if not kinds:
+            return []
+        parts = [f"{value:.3g} for {KINDS.get(kind, kind)}" for kind, value in kinds.items()]
+        return [f"What the simulation misses is, in units of the noise, {listed(parts)}."]
+    part = "held_out" if before.get("held_out") and after.get("held_out") else "used"
+    if not before.get(part) or not after.get(part):
+        return []
+    parts = [
+        f"from {value:.3g} to {after[part][kind]:.3g} for {KINDS.get(kind, kind)}"
+        for kind, value in before[part].items()
+        if kind in after[part]
+    ]
+    data = "data that the fit did not use" if part == "held_out" else "the data that were fitted"
+    texts = [
+        f"On {data}, the error of the simulation falls {listed(parts)}, in units of the noise "
+        "(1 is noise alone)."
+    ]
+    if _far_from_noise(said):
+        texts.append(
+            "That is still well above the noise. What rings after a kick cannot be foretold in its "
+            "phase and is not held against a law, so more may hide in it."
+        )
+    return texts
+
+
+def _far_from_noise(said: Statement) -> bool:
+    """Whether the simulation still misses by far more than the noise, causes in."""
+    values = [v for kinds in said["fit"].get("after", {}).values() for v in kinds.values()]
+    return max(values, default=0.0) > FAR_FROM_NOISE
+
+
+def _remains(said: Statement) -> list[str]:
+    remains = said["remains"]
+    if not remains["significant"]:
+        return []
+    place = f", strongest in {remains['where']}" if remains.get("where") else ""
+    return [f"Something beyond noise and the laws' own uncertainty remains{place}."]
+
+
+def ruled_out(said: Statement) -> str:
+    """What was ruled out, and by how much."""
+    out = said.get("ruled_out") or []
+    if said["verdict"] in ("not asked", "") or not out:
+        return ""
+    fitted = [one for one in out if one["how"] != "screened"]
+    texts = []
+    null = next((-one["log_odds"] for one in said.get("ranking", []) if not one["effects"]), None)
+    if said["causes"] and null is not None:
+        texts.append(f"That nothing was left out is ruled out, {odds(null)}.")
+    instead = [one for one in fitted if one["how"] == "instead"]
+    if instead:
+        parts = [
+            f"{short(one['effect'])} {odds(-one['log_odds'])}" for one in instead[:TOLD_RIVALS]
+        ]
+        texts.append(f"Odds against what could stand in its place: {listed(parts)}.")
+    beside = [one for one in fitted if one["how"] == "beside"]
+    if beside:
+        parts = [f"{short(one['effect'])} {odds(-one['log_odds'])}" for one in beside[:TOLD_RIVALS]]
+        texts.append(f"Nothing more is asked for beside it; odds against: {listed(parts)}.")
+    count = len(out) - len(instead) - len(beside)
+    if count:
+        what = "effects" if count > 1 else "effect"
+        texts.append(f"{count} more {what} of the library fell out in screening.")
+    return " ".join(texts)
+
+
+def guesses(said: Statement) -> str:
+    """The paper's guesses, weighed."""
+    told = said.get("paper_guesses") or {}
+    texts = []
+    camera = told.get("camera_rate")
+    if camera:
+        share = camera["share"]
+        gap = camera["simulated_deg"] - camera["recorded_deg"]
+        texts.append(
+            "The paper suspects the camera's rate behind the smaller measured angle. Seen only at "
+            f"the camera's frames, the simulated {camera['simulated_deg']:.3f} deg would read "
+            f"{camera['at_frames_deg']:.3f} deg, against {camera['recorded_deg']:.3f} deg "
+            "recorded: "
+            + (
+                f"the rate makes {100.0 * share:.0f} % of the difference"
+                + (", so it is not the reason." if share < 0.5 else ".")
+                if abs(gap) > 0.005
+                else "there is no difference to explain."
+            )
+        )
+        exposure = camera["log_odds"].get("camera_exposure")
+        if exposure is not None and exposure < -log(20.0):
+            texts.append(f"A long exposure instead is ruled out, {odds(-exposure)}.")
+    content = told.get("frequency_content")
+    if content:
+        texts.append(_frequency_content(said, content))
+    return " ".join(texts)
+
+
+def _frequency_content(said: Statement, content: Statement) -> str:
+    text = (
+        "It suspects friction and hysteresis behind the frequency content of the tensions. At the "
+        f"second to tenth harmonic the tensions are {content['before']:.3g} times the noise off "
+    )
+    if not said["causes"]:
+        return text + "with nothing left out, and neither is asked for."
+    text += f"before and {content['after']:.3g} times after."
+    friction, hysteresis = content["friction_log_odds"], content["hysteresis_log_odds"]
+    if friction is None and hysteresis is None:
+        return text + " Neither was near enough to be fitted."
+    if friction is not None and (hysteresis is None or friction > hysteresis):
+        text += " Friction"
+        against, of = hysteresis, "hysteresis of the cables without friction"
+        best = friction
+    else:
+        text += " Hysteresis of the cables"
+        against, of = friction, "friction at the pulleys"
+        best = hysteresis
+    text += (
+        " is in the best explanation"
+        if best == 0.0
+        else f" is {odds(-(best or 0.0))} behind the best"
+    )
+    if against is None:
+        return text + f"; {of} was not near enough to be fitted."
+    return text + f"; {of} is {odds((best or 0.0) - against)} behind it."
+
+
+def change(said: Statement) -> str:
+    """What would change the verdict: the nearest rival, the next experiment, taps and logs."""
+    texts = []
+    moved_far = [one for one in said.get("parameters", []) if abs(one["sigmas"]) > MOVED_SIGMAS]
+    if moved_far and said["verdict"] != "parameter":
+        parts = [
+            f"{parameter_name(one['parameter'])} ({one['sigmas']:+.1f} sigma)"
+            for one in moved_far[:TOLD_RIVALS]
+        ]
+        texts.append(
+            f"The fit moved {listed(parts)}: measure {'it' if len(moved_far) == 1 else 'these'} "
+            "independently."
+        )
+    sets = [one for one in said["causes"] if one["indistinguishable_from"]]
+    for one in sets:
+        texts.append(f"A run that tells {_set(one)} apart would narrow the set.")
+    experiment = said.get("next_experiment")
+    if experiment:
+        command = f" (`{experiment['command']}`)" if experiment.get("command") else ""
+        texts.append(sentence(f"next: {experiment['what']}{command}"))
+    texts += [sentence(one) for one in (said.get("missing") or {}).values()]
+    if said["verdict"] == "none":
+        texts.append(
+            "Effects that this motion hardly stirs would go unseen: another amplitude or frequency "
+            "would show more."
+        )
+    return " ".join(texts)

@@ -1,0 +1,173 @@
+"""Parameters before physics: the system with its parameters fitted within their priors.
+
+What cannot be explained by parameters must not drag them along: a share of whatever residual is
+left counts as the unknown's, and shrinks as the residual does.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.engine.evidence import (
+    Frame,
+    Problem,
+    base_variance,
+    directions,
+    form_variance,
+)
+from analysis.engine.lens import Lens
+from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
+from analysis.engine.system import Array, Point, System
+
+ROUNDS = 3
+"""Steps, at most."""
+
+LEAST_TYPICAL = 12
+"""Features that a typical misfit needs."""
+
+MEDIAN_OF_SQUARE = 0.455
+"""Median of the square of a standard normal number."""
+
+GOOD = 1.3
+"""A misfit below this, a feature, needs no further linearisation."""
+
+UNKNOWN_SHARE = 0.15
+"""Of the residual, what is not the parameters'."""
+
+FARTHEST = 3.0
+"""No parameter is taken farther than this, in sigmas."""
+
+STRIDE = 2.0
+"""Nor farther than this at once."""
+
+LINEAR = 0.3
+"""Where the simulation misses the prediction by less than this share, the columns still hold."""
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """The system at its likeliest parameters.
+
+    Attributes
+    ----------
+    at
+        Nuisances, in sigmas, shape (nuisances,).
+    features
+        Simulated there, shape (f,).
+    columns
+        What one sigma of each nuisance does there, shape (f, nuisances).
+    problem
+        What is left there, in directions of the nuisances.
+    rotation
+        Nuisances of directions, shape (nuisances, p).
+    """
+
+    at: Array
+    features: Array
+    columns: Array
+    problem: Problem
+    rotation: Array
+
+
+def calibrate(
+    system: System, lens: Lens, data: Array, progress: Progress | None = None
+) -> Calibrated:
+    """Fit the parameters within their priors, with nothing else.
+
+    Parameters
+    ----------
+    system, lens
+        What is simulated and how it is looked at.
+    data
+        Recorded features, shape (f,).
+    progress
+        Told of it.
+    """
+    used = ~(lens.labels.ringing | lens.labels.sealed)
+    at = np.zeros(len(system.nuisances))
+    features = simulate_features(system, lens, [Point(at)])[0]
+    columns = nuisance_columns(system, lens, at, progress)
+    for round_ in range(ROUNDS):
+        base = base_variance(lens, features, data)
+        residual = data - features
+        variance = base + form_variance(lens.labels, residual, UNKNOWN_SHARE, 1.0)
+        problem = Problem(residual, columns, at, variance, lens.labels, used)
+        frame = Frame(problem, variance)
+        none = np.zeros((lens.size, 0))
+        target = np.clip(frame.nuisance(none, np.zeros(0)), -FARTHEST, FARTHEST)
+        move = target - at
+        largest = float(np.abs(move).max(initial=0.0))
+        if largest < LINEAR:
+            break
+        share = min(1.0, STRIDE / largest)
+        before = _misfit(residual, at, variance, used)
+        better = False
+        for _ in range(3):
+            there = at + share * move
+            found = simulate_features(system, lens, [Point(there)])[0]
+            if _misfit(data - found, there, variance, used) < before:
+                better = True
+                break
+            share *= 0.4
+        if not better:
+            break
+        foretold = features + columns @ (there - at)
+        missed = _misfit(found - foretold, np.zeros(1), variance, used)
+        moved = _misfit(found - features, np.zeros(1), variance, used)
+        at, features = there, found
+        good = _misfit(data - features, at, base, used) < GOOD * int(used.sum())
+        if good:
+            break
+        if missed > LINEAR**2 * moved and round_ == 0:
+            columns = nuisance_columns(system, lens, at, progress)
+    base = base_variance(lens, features, data)
+    base = base * unsettled(lens, data - features, base)
+    rotation = directions(columns, base, used)
+    problem = Problem(
+        residual=data - features,
+        nuisance=columns @ rotation,
+        at=rotation.T @ at,
+        base=base,
+        labels=lens.labels,
+        used=used,
+    )
+    return Calibrated(at, features, columns, problem, rotation)
+
+
+def unsettled(lens: Lens, residual: Array, base: Array) -> Array:
+    """By how much the variance of stretches that do not repeat is too small, shape (f,), 1 or more.
+
+    While a motion starts, stops and dies away, what rings goes its own way in every channel: the
+    typical misfit there, not the strongest, tells how far to trust such a stretch.
+
+    Parameters
+    ----------
+    lens
+        How the samples are looked at.
+    residual
+        Recorded less simulated features, shape (f,).
+    base
+        Their variance, shape (f,).
+    """
+    labels = lens.labels
+    factor = np.ones(lens.size)
+    kinds = {bundle.kind: i for i, bundle in enumerate(lens.bundles)}
+    places = [
+        (bundle.record, kinds[bundle.kind], segment.name)
+        for bundle in lens.bundles
+        for segment in bundle.segments
+    ]
+    known = {place: i for i, place in enumerate(dict.fromkeys(places))}
+    starts = np.cumsum([0, *(len(bundle.segments) for bundle in lens.bundles)])
+    which = np.array([known[one] for one in places])[starts[labels.bundle] + labels.segment]
+    for place, i in known.items():
+        own = labels.free & (which == i) & ~labels.ringing
+        if place[2] == "rest" or np.count_nonzero(own) < LEAST_TYPICAL:
+            continue
+        typical = float(np.median(residual[own] ** 2 / base[own])) / MEDIAN_OF_SQUARE
+        factor[which == i] = max(typical, 1.0)
+    return factor
+
+
+def _misfit(residual: Array, at: Array, variance: Array, used: Array) -> float:
+    return float((residual[used] ** 2 / variance[used]).sum() + at @ at)

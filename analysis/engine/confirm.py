@@ -1,0 +1,106 @@
+"""The proof: fitted to one part of the data, judged on the part that was kept back."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.refine import Fitted
+from analysis.engine.search import Search
+from analysis.engine.system import Array, Bundle, Point, System
+
+LEAST_RECORDS = 3
+"""From so many recordings on, one is kept back whole but for its rest, unless one is sealed."""
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """How well simulations fit samples, in units of their noise (1 is noise alone).
+
+    Attributes
+    ----------
+    before, after
+        Nothing left out and the chosen hypothesis, both fitted to the used part: part of the data
+        ("used", "held_out") -> kind of channel -> rms of the residual over the noise.
+    held_record
+        The recording that was kept back whole; "" where there are too few.
+    """
+
+    before: Mapping[str, Mapping[str, float]]
+    after: Mapping[str, Mapping[str, float]]
+    held_record: str
+
+
+def confirm(search: Search, chosen: Fitted) -> Confirmation:
+    """Fit the null and the chosen hypothesis to the used part, and judge both on the other.
+
+    Parameters
+    ----------
+    search
+        What was found.
+    chosen
+        The hypothesis.
+    """
+    bundles = search.system.bundles
+    records = list(dict.fromkeys(bundle.record for bundle in bundles))
+    sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
+    held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
+    used = _used(search, held)
+    errors = []
+    for fitted in (search.null, chosen):
+        again = search.refiner.settle(search.refiner.again(fitted, used))
+        errors.append(sample_errors(search.system, again.point, held))
+    return Confirmation(before=errors[0], after=errors[1], held_record=held)
+
+
+def _used(search: Search, held: str) -> NDArray[np.bool_]:
+    labels, bundles = search.lens.labels, search.system.bundles
+    whole = np.array([bundle.record == held for bundle in bundles])[labels.bundle]
+    resting = np.array(
+        [
+            bundles[b].segments[s].name == "rest"
+            for b, s in zip(labels.bundle, labels.segment, strict=True)
+        ]
+    )
+    return np.asarray(~labels.held_out & ~(whole & ~resting))
+
+
+def sample_errors(system: System, point: Point, held: str = "") -> dict[str, dict[str, float]]:
+    """Rms of the samples' residuals over their noise.
+
+    Parameters
+    ----------
+    system, point
+        What is simulated.
+    held
+        A recording that counts as kept back.
+
+    Returns
+    -------
+    dict
+        "used" and "held_out" -> kind of channel -> rms; a part without samples is left out.
+    """
+    (residuals,) = system.simulate([point], lambda p: whitened(system.bundles, p))
+    sums: dict[str, dict[str, list[Array]]] = {"used": {}, "held_out": {}}
+    for bundle, residual in zip(system.bundles, residuals, strict=True):
+        for segment in bundle.segments:
+            inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
+            away = segment.held_out or segment.sealed
+            away = away or (bundle.record == held and segment.name != "rest")
+            if inside.any():
+                part = sums["held_out" if away else "used"]
+                part.setdefault(bundle.kind, []).append(residual[inside].reshape(-1) ** 2)
+    return {
+        part: {kind: float(np.sqrt(np.concatenate(all_).mean())) for kind, all_ in kinds.items()}
+        for part, kinds in sums.items()
+    }
+
+
+def whitened(bundles: "tuple[Bundle, ...] | list[Bundle]", prediction: list[Array]) -> list[Array]:
+    """Residuals of samples in units of their noise, for each bundle, shape (n, m)."""
+    found = []
+    for bundle, seen in zip(bundles, prediction, strict=True):
+        whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
+        found.append((bundle.value - seen) @ whiten.T)
+    return found

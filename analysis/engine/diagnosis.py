@@ -1,0 +1,135 @@
+"""The whole of it: calibrate, locate, search, judge, confirm."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from analysis.engine.calibrate import Calibrated
+from analysis.engine.confirm import Confirmation, confirm
+from analysis.engine.implausible import Implausible, implausible
+from analysis.engine.judge import Judgement, judge
+from analysis.engine.locate import Finding, locate
+from analysis.engine.search import Search, Tell, look, search
+from analysis.engine.system import Array, System
+
+Stage = Literal["align", "locate", "name", "confirm"]
+
+POORLY = 2.0
+"""A hypothesis whose misfit is more than this for each feature leaves something unexplained."""
+
+
+@dataclass(frozen=True)
+class Remains:
+    """What the chosen hypothesis leaves.
+
+    Attributes
+    ----------
+    misfit
+        Squared residual over its variance, a feature.
+    significant
+        Whether that is more than noise and the error of form allow.
+    findings
+        Where.
+    """
+
+    misfit: float
+    significant: bool
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found out about a system; stages that were not asked for are None.
+
+    Attributes
+    ----------
+    system
+        What was diagnosed.
+    calibrated
+        The system at its likeliest parameters, nothing left out.
+    findings
+        Where recording and simulation differ there, the strongest first.
+    search
+        Everything that was weighed.
+    judgement
+        The verdict.
+    remains
+        What the chosen hypothesis leaves.
+    confirmation
+        Fit before and after, on used and on held-out data.
+    implausible
+        Better fits that are not believed, the best first.
+    """
+
+    system: System
+    calibrated: Calibrated
+    findings: tuple[Finding, ...]
+    search: Search | None
+    judgement: Judgement | None
+    remains: Remains | None
+    confirmation: Confirmation | None
+    implausible: tuple[Implausible, ...] = ()
+
+    @property
+    def verdict(self) -> str:
+        """The word "none", "parameter", "explained", "ambiguous" or "unexplained"."""
+        if self.judgement is None:
+            return ""
+        poor = self.remains is not None and self.remains.significant
+        if poor and self.judgement.verdict == "none":
+            return "unexplained"
+        return self.judgement.verdict
+
+
+def diagnose(
+    system: System,
+    *,
+    stop_after: Stage | None = None,
+    tell: Tell | None = None,
+    anew: bool = False,
+    most_causes: int = 3,
+) -> Diagnosis:
+    """Find out what a simulation leaves out.
+
+    Parameters
+    ----------
+    system
+        What was recorded, how it is simulated, and what may have been left out.
+    stop_after
+        "align": parameters only; "locate": where it differs; "name": no proof on held-out data.
+    tell
+        Told of progress.
+    anew, most_causes
+        As `search` has them.
+    """
+    if stop_after in ("align", "locate"):
+        seen = look(system, tell, terms=False)
+        found = locate(system.bundles, seen.calibrated.problem, seen.calibrated.problem.residual)
+        return Diagnosis(system, seen.calibrated, found, None, None, None, None)
+    searched = search(system, tell, anew=anew, most_causes=most_causes)
+    problem = searched.calibrated.problem
+    findings = locate(system.bundles, problem, searched.null.problem.residual)
+    judgement = judge(searched.fitted, {one.name: one for one in system.candidates})
+    remains = _remains(searched, judgement)
+    proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
+    flagged = implausible(searched, judgement.chosen)
+    return Diagnosis(
+        system, searched.calibrated, findings, searched, judgement, remains, proof, flagged
+    )
+
+
+def _remains(searched: Search, judgement: Judgement) -> Remains:
+    chosen = judgement.chosen
+    problem, weighed = chosen.problem, chosen.weighed
+    residual = problem.residual + problem.nuisance @ (problem.at - weighed.nuisance)
+    used = problem.used
+    misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
+    scaled = _allowed(residual, weighed.variance, problem.base)
+    found = locate(searched.system.bundles, problem, np.where(used, scaled, 0.0))
+    return Remains(misfit, misfit > POORLY, found)
+
+
+def _allowed(residual: Array, variance: Array, base: Array) -> Array:
+    """The residual, scaled so that the error of form counts as noise."""
+    return np.asarray(residual * np.sqrt(base / variance))

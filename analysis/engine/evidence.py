@@ -1,0 +1,355 @@
+"""How well a hypothesis explains the features: Gaussian evidence that forgives a law its form.
+
+The true law is never quite the library's. What a candidate does to a feature is therefore
+uncertain by a share of itself, more so at high harmonics; and how large that share is, is itself
+not known: the evidence is averaged over three sizes of it. All other parameters are marginalised
+over their priors, to first order about where the residual was simulated.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+
+from analysis.engine.lens import Labels, Lens
+from analysis.engine.system import Array
+
+FORM_SIZES = (0.3, 1.0, 3.0)
+"""Sizes of the error of form that are averaged over, relative to what a candidate states."""
+
+FORM_WEIGHTS = (0.35, 0.4, 0.25)
+
+UNSEEN = 0.1
+"""A direction of the nuisances that does less than this, in units of noise, is not seen."""
+
+SPILLED = 0.1
+"""The error of form reaches lines where the law itself does little: this share of what it does."""
+
+SPILLED_SLOW = 1.0
+"""And of what changes slowly."""
+
+MEMORY = 2.5
+"""What sticks or creeps remembers: where nothing moves, a law is off by its error of form, times
+this, of what it does in motion."""
+
+MEMORY_LINES = 0.3
+"""The same for all but the mean and the slowest line."""
+
+SPREAD = 0.3
+"""Where every line of a stretch is looked at, the error of form that reaches other lines is, over
+all of them, this share of what the law does."""
+
+LEAKED = 0.5
+"""Of a ring, this share is seen one line away, half of that two lines away, and so on."""
+
+MOST_FORM = 1.0
+"""However high the harmonic, a law is not more wrong than by all it does."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is left to explain.
+
+    Parameters
+    ----------
+    residual
+        Recorded less simulated features, in units of noise, shape (f,).
+    nuisance
+        What one sigma of each direction of the nuisances does, shape (f, p).
+    at
+        Where they were in that simulation, in sigmas, shape (p,).
+    base
+        Variance of the features without any candidate, shape (f,).
+    labels
+        What each feature is.
+    used
+        Which features count, shape (f,).
+    """
+
+    residual: Array
+    nuisance: Array
+    at: Array
+    base: Array
+    labels: Labels
+    used: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """Evidence for one set of columns.
+
+    Attributes
+    ----------
+    log_evidence
+        Averaged over the sizes of the error of form.
+    estimate, covariance
+        Of the columns' factors, at the likeliest size, shapes (k,), (k, k).
+    nuisance
+        The likeliest directions of the nuisances, in sigmas, shape (p,).
+    chi2
+        Of the residual under the prior, at the likeliest size.
+    variance
+        Of the features at the likeliest size, shape (f,).
+    gains
+        For each column, by how much chi2 would rise without it alone, shape (k,).
+    """
+
+    log_evidence: float
+    estimate: Array
+    covariance: Array
+    nuisance: Array
+    chi2: float
+    variance: Array
+    gains: Array
+
+
+class Frame:
+    """A problem with given variances: everything that does not depend on the columns, once."""
+
+    def __init__(self, problem: Problem, variance: Array) -> None:
+        used = problem.used
+        self.root = np.sqrt(variance[used])
+        self._used = used
+        # The residual as it would be with all nuisances at their prior mean.
+        whole = problem.residual + problem.nuisance @ problem.at
+        self.r = whole[used] / self.root
+        self.j = problem.nuisance[used] / self.root[:, None]
+        self._factor = cholesky(
+            np.eye(self.j.shape[1]) + self.j.T @ self.j, lower=True, check_finite=False
+        )
+        self._jr = self._half(self.j.T @ self.r)
+        self.chi2 = float(self.r @ self.r - self._jr @ self._jr)
+        self.log_determinant = float(
+            2.0 * np.log(self.root).sum() + 2.0 * np.log(np.diag(self._factor)).sum()
+        )
+
+    def _half(self, right: Array) -> Array:
+        solved: Array = solve_triangular(self._factor, right, lower=True, check_finite=False)
+        return solved
+
+    def normal(self, columns: Array) -> tuple[Array, Array]:
+        """Normal equations of columns, shape (f, k): their matrix and right side."""
+        a = columns[self._used] / self.root[:, None]
+        ja = self._half(self.j.T @ a)
+        return a.T @ a - ja.T @ ja, a.T @ self.r - ja.T @ self._jr
+
+    def nuisance(self, columns: Array, estimate: Array) -> Array:
+        """The likeliest nuisances, given the columns' factors."""
+        rest = self.r - (columns[self._used] / self.root[:, None]) @ estimate
+        found: Array = cho_solve((self._factor, True), self.j.T @ rest)
+        return found
+
+
+def form_variance(labels: Labels, done: Array, share: float, size: float) -> Array:
+    """Variance that the error of form of one candidate gives the features.
+
+    Parameters
+    ----------
+    labels
+        What each feature is.
+    done
+        What the candidate does to each, shape (f,).
+    share, size
+        The candidate's error of form, and the size it is taken at.
+    """
+    power = group_power(labels, done)
+    moving = np.where((labels.line > 0.0) & ~labels.ringing, done**2, 0.0)
+    total = np.bincount(labels.stretch, moving)[labels.stretch]
+    spill = np.where(labels.order > 0, SPILLED_SLOW, SPILLED)
+    spill = np.where(labels.every, np.sqrt(SPREAD / labels.samples), spill)
+    relative = np.minimum(share * size * labels.growth, MOST_FORM)
+    variance = relative**2 * (power + spill**2 * total)
+    # What it does while the motion repeats says how far its memory may be off elsewhere.
+    series, steady = labels.series, ~labels.free
+    done_there = np.bincount(series, np.where(steady, moving, 0.0))
+    _, first = np.unique(labels.stretch, return_index=True)
+    samples = np.bincount(
+        series[first], np.where(steady[first], labels.samples[first], 0), len(done_there)
+    )
+    per_sample = (done_there / np.maximum(samples, 1))[series]
+    memory = np.minimum(MEMORY * share * size, 1.0) * np.where(labels.line < 1.0, 1.0, MEMORY_LINES)
+    variance += np.where(labels.free & ~labels.every, memory**2 * per_sample * labels.samples, 0.0)
+    return np.asarray(variance)
+
+
+def group_power(labels: Labels, features: Array) -> Array:
+    """Squared size of each feature's group: cosine and sine; of a band of lines, the mean line's."""
+    total, count = np.bincount(labels.group, features**2), np.bincount(labels.group)
+    mean = np.where(labels.every, total[labels.group] / count[labels.group], total[labels.group])
+    return np.asarray(mean)
+
+
+def directions(nuisance: Array, base: Array, used: NDArray[np.bool_]) -> Array:
+    """Directions among the nuisances that can be seen at all, shape (nuisances, p).
+
+    Nuisances are independent and of unit variance, and so are orthonormal directions among them;
+    those that move no feature by a share of its noise stay at their prior, and are left out.
+
+    Parameters
+    ----------
+    nuisance
+        What one sigma of each does, shape (f, nuisances).
+    base
+        Variance of the features, shape (f,).
+    used
+        Which features count.
+    """
+    seen = nuisance[used] / np.sqrt(base[used])[:, None]
+    values, vectors = np.linalg.eigh(seen.T @ seen)
+    return np.asarray(vectors[:, values > UNSEEN**2])
+
+
+def base_variance(lens: Lens, features: Array, data: Array) -> Array:
+    """Variance of the features where nothing was left out: noise, and the simulator's own error.
+
+    A ring cannot be foretold, and over a stretch that does not hold a whole number of its periods
+    it is seen on other lines too, less the farther they are.
+
+    Parameters
+    ----------
+    lens
+        How the samples are looked at.
+    features, data
+        Simulated and recorded, shape (f,).
+    """
+    labels = lens.labels
+    moving = labels.line > 0.0
+    total = np.bincount(labels.stretch, np.where(moving, features**2, 0.0))
+    share = np.array([bundle.base_share for bundle in lens.bundles])[labels.bundle]
+    # Where every line is looked at, the simulator's own error has the signal's colour.
+    coloured = group_power(labels, np.where(moving, features, 0.0))
+    coloured += SPREAD * total[labels.stretch] / labels.samples
+    variance = 1.0 + share**2 * np.where(labels.every, coloured, total[labels.stretch])
+    rung = np.where(labels.ringing, np.maximum(features**2, data**2) - 1.0, 0.0)
+    for stretch in np.unique(labels.stretch[labels.ringing]):
+        own = np.flatnonzero(labels.stretch == stretch)
+        lines = labels.line[own]
+        apart = np.unique(np.round(lines, 6))
+        spacing = float(np.diff(apart).min()) if len(apart) > 1 else 1.0
+        if not labels.free[own[0]]:
+            # Harmonics stand as many of the stretch's own lines apart as it has periods.
+            segment = lens.bundles[labels.bundle[own[0]]].segments[labels.segment[own[0]]]
+            hertz = segment.fundamental_hz or 1.0
+            spacing = 1.0 / ((segment.end_s - segment.start_s) * hertz)
+        distance = np.abs(lines[:, None] - lines[None, :]) / spacing
+        leaks = (LEAKED / np.maximum(distance, 1.0)) ** 2
+        variance[own] += leaks @ np.maximum(rung[own], 0.0)
+    return np.asarray(variance)
+
+
+def weigh(
+    problem: Problem,
+    columns: Mapping[str, Array],
+    done: Mapping[str, Array],
+    shares: Mapping[str, float],
+    lows: Array | None = None,
+    highs: Array | None = None,
+    prior: tuple[Array, Array] | None = None,
+    rounds: int = 3,
+    standing: bool = False,
+    sizes: Sequence[float] = FORM_SIZES,
+) -> Weighed:
+    """Evidence for candidates whose columns are given.
+
+    Parameters
+    ----------
+    problem
+        What is left to explain. Where it was simulated with the candidates on, the factors of the
+        columns are what is to be added.
+    columns
+        Candidate -> its columns, shape (f, k).
+    done
+        Candidate -> what it does already in the problem's simulation, shape (f,).
+    shares
+        Candidate -> its error of form.
+    lows, highs
+        Bounds of the factors, shape (k,).
+    prior
+        Rows beside the features, as if the factors had been measured: residuals (s,) and columns
+        (s, k).
+    rounds
+        How often what the candidates do is taken again from the estimate.
+    standing
+        Evidence of the simulation as it stands: what the factors would still add only tells where
+        to go, the nuisances may still move. Otherwise the evidence with the factors added.
+    sizes
+        Of the error of form.
+    """
+    names = list(columns)
+    widths = [columns[name].shape[1] for name in names]
+    ends = np.cumsum([0, *widths])
+    size_all = int(problem.residual.size)
+    stacked = np.hstack([columns[name] for name in names]) if names else np.zeros((size_all, 0))
+    logs, kept = [], []
+    for size in sizes if names else (1.0,):
+        estimate = np.zeros(stacked.shape[1])
+        for turn in range(rounds if names else 1):
+            variance = problem.base.copy()
+            for i, name in enumerate(names):
+                does = done[name]
+                if not standing:
+                    # Before there is an estimate, what is to be explained stands for it.
+                    does = does + (
+                        columns[name] @ estimate[ends[i] : ends[i + 1]]
+                        if turn
+                        else problem.residual
+                    )
+                variance += form_variance(problem.labels, does, shares[name], size)
+            frame = Frame(problem, variance)
+            matrix, right = frame.normal(stacked)
+            chi2 = frame.chi2
+            if prior is not None:
+                matrix = matrix + prior[1].T @ prior[1]
+                right = right + prior[1].T @ prior[0]
+                chi2 += float(prior[0] @ prior[0])
+            estimate = bounded(matrix, right, lows, highs)
+        gain = float(2.0 * right @ estimate - estimate @ matrix @ estimate)
+        chi2 -= gain
+        logs.append(-0.5 * (chi2 + (gain if standing else 0.0) + frame.log_determinant))
+        kept.append((estimate, matrix, frame, chi2, variance))
+    weights = FORM_WEIGHTS if len(logs) == len(FORM_WEIGHTS) else (1.0,) * len(logs)
+    best = int(np.argmax(np.array(logs) + np.log(weights)))
+    log_evidence = float(np.logaddexp.reduce(np.array(logs) + np.log(weights)))
+    estimate, matrix, frame, chi2, variance = kept[best]
+    covariance = np.linalg.pinv(matrix) if matrix.size else matrix
+    variances = np.maximum(np.diag(covariance), 1e-300) if matrix.size else np.zeros(0)
+    return Weighed(
+        log_evidence=log_evidence,
+        estimate=estimate,
+        covariance=covariance,
+        nuisance=frame.nuisance(stacked, estimate),
+        chi2=chi2,
+        variance=variance,
+        gains=estimate**2 / variances,
+    )
+
+
+def bounded(matrix: Array, right: Array, lows: Array | None, highs: Array | None) -> Array:
+    """The minimum of the quadratic form within bounds: those that leave them are held there."""
+    count = len(right)
+    estimate = np.zeros(count)
+    if not count:
+        return estimate
+    low = np.full(count, -np.inf) if lows is None else lows
+    high = np.full(count, np.inf) if highs is None else highs
+    free = np.ones(count, dtype=bool)
+    for _ in range(count + 1):
+        if not free.any():
+            break
+        rest = right[free] - matrix[np.ix_(free, ~free)] @ estimate[~free]
+        part = matrix[np.ix_(free, free)]
+        ridge = 1e-10 * np.trace(part) / max(len(part), 1) + 1e-300
+        solved = np.linalg.solve(part + ridge * np.eye(len(part)), rest)
+        held = np.clip(solved, low[free], high[free])
+        outside = held != solved
+        estimate[free] = held
+        if not outside.any():
+            break
+        # One a round, the farthest out: a neighbour may come back in once it is held.
+        places = np.flatnonzero(free)
+        scale = np.sqrt(np.maximum(np.diag(part), 1e-300))
+        worst = int(np.argmax(np.abs(solved - held) * scale))
+        free[places[worst]] = False
+    return estimate

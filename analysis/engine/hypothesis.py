@@ -1,0 +1,97 @@
+"""A hypothesis: which candidates are on, and which of their terms."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import comb, log
+
+from analysis.engine.system import Candidate
+
+LOG_ODDS = -5.0
+"""Prior odds of one candidate being there, as a logarithm: about one in a hundred and fifty."""
+
+LOG_COST = 3.0
+"""What a free number costs: half the logarithm of some four hundred features."""
+
+LOG_COST_SHAPE = 1.5
+"""What a shape costs, which its range confines."""
+
+
+LOG_COST_FAMILY = 8.0
+"""What a second law of one family costs."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One candidate of a hypothesis.
+
+    Parameters
+    ----------
+    terms
+        Names of the terms that are on.
+    shared
+        Whether they have one value.
+    shapes
+        The shapes' values, by name.
+    """
+
+    terms: tuple[str, ...]
+    shared: bool = False
+    shapes: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def free(self) -> int:
+        """Number of free magnitudes."""
+        return 1 if self.shared else len(self.terms)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Candidates that are on, in the order of their names; none is the null hypothesis."""
+
+    parts: Mapping[str, Part] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The candidates."""
+        return tuple(sorted(self.parts))
+
+    def plus(self, name: str, part: Part) -> "Hypothesis":
+        """With one more."""
+        return Hypothesis({**self.parts, name: part})
+
+    def without(self, name: str) -> "Hypothesis":
+        """With one less."""
+        return Hypothesis({key: one for key, one in self.parts.items() if key != name})
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What tells it from others, shapes aside."""
+        return tuple(
+            (name, tuple(sorted(self.parts[name].terms)), self.parts[name].shared)
+            for name in self.names
+        )
+
+    def log_prior(self, candidates: Mapping[str, Candidate]) -> float:
+        """Prior odds, the choice of terms and what their free numbers cost."""
+        families = [candidates[name].family for name in self.parts if candidates[name].family]
+        doubled = len(families) - len(set(families))
+        whole = sum(part_log_prior(candidates[name], one) for name, one in self.parts.items())
+        return whole - LOG_COST_FAMILY * doubled
+
+
+def part_log_prior(candidate: Candidate, part: Part) -> float:
+    """What one candidate, with these terms, costs."""
+    total = LOG_ODDS + log(candidate.prior)
+    of, on = len(candidate.terms), len(part.terms)
+    if not candidate.together and of > 1:
+        wholes = {frozenset(one) for one in candidate.combinations}
+        if frozenset(part.terms) in wholes:
+            total -= log(2.0 * len(wholes))
+        else:
+            total -= log(2.0 * of * comb(of, on))
+    free = 0 if candidate.fixed else part.free
+    shapes = sum(not shape.whole for shape in candidate.shapes)
+    tried = 1
+    for shape in candidate.shapes:
+        tried *= len(shape.grid) if shape.whole and shape.grid else 1
+    return total - LOG_COST * free - LOG_COST_SHAPE * shapes - log(tried)

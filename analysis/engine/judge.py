@@ -1,0 +1,207 @@
+"""The verdict: which causes are there, how sure that is, and what these data cannot tell apart."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.engine.refine import Fitted
+from analysis.engine.system import Array, Candidate
+
+TEMPER = 2.0
+"""Scores count for less than they say, by this factor: laws are never quite the library's."""
+
+COVERED = 0.97
+"""A set of indistinguishable causes holds this much of the probability."""
+
+LEAST_SHARE = 0.02
+"""A rival less likely than this, beside the named cause, is not in its set."""
+
+NEGLIGIBLE = 0.02
+"""A magnitude below this share of its usual size is nothing."""
+
+SECOND = 0.8
+"""A cause beside the first is reported if it is present with this probability."""
+
+CERTAIN = 0.9
+"""A cause named alone is at least this likely."""
+
+FAR_SIGMAS = 3.0
+"""A parameter that moved further than this from its prior is a finding, not a refinement."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A cause that could stand in for another."""
+
+    name: str
+    probability: float
+    fitted: Fitted
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One cause of the mismatch.
+
+    Attributes
+    ----------
+    name
+        The likeliest candidate.
+    probability
+        That it is this one, and that there is one at all.
+    present
+        That there is a cause here, whichever it is.
+    rivals
+        Others that these data do not tell from it, the likeliest first.
+    values, sigmas
+        Term -> magnitude and standard deviation, for the terms that are on.
+    shapes, shape_sigmas
+        Its other numbers.
+    at_limit
+        Numbers at the edge of their plausible range: a better fit with an implausible number.
+    """
+
+    name: str
+    probability: float
+    present: float
+    rivals: tuple[Rival, ...]
+    values: Mapping[str, float]
+    sigmas: Mapping[str, float]
+    shapes: Mapping[str, float]
+    shape_sigmas: Mapping[str, float]
+    at_limit: tuple[str, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The cause and its rivals."""
+        return (self.name, *(one.name for one in self.rivals))
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What the search comes to.
+
+    Attributes
+    ----------
+    verdict
+        "none", "parameter", "explained" or "ambiguous".
+    causes
+        The causes, the surest first; empty for "none".
+    chosen
+        The likeliest hypothesis.
+    probability
+        Of each fitted hypothesis, in their order.
+    """
+
+    verdict: str
+    causes: tuple[Cause, ...]
+    chosen: Fitted
+    probability: tuple[float, ...]
+
+
+def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judgement:
+    """Weigh the fitted hypotheses.
+
+    Parameters
+    ----------
+    fitted
+        The hypotheses, the null among them.
+    candidates
+        By name.
+    """
+    scores = np.array(
+        [-np.inf if negligible(one, candidates) else _plausible_score(one) for one in fitted]
+    )
+    weights = np.exp((scores - scores.max()) / TEMPER)
+    weights /= weights.sum()
+    total: dict[str, float] = defaultdict(float)
+    for one, weight in zip(fitted, weights, strict=True):
+        for name in one.hypothesis.names:
+            total[name] += float(weight)
+    absent = sum(
+        float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
+    )
+    chosen = fitted[int(np.argmax(weights))]
+    if absent > 0.5 or not chosen.hypothesis.parts:
+        null = next(one for one in fitted if not one.hypothesis.parts)
+        return Judgement("none", (), null, tuple(float(w) for w in weights))
+    causes = tuple(
+        sorted(
+            (_cause(name, chosen, fitted, weights) for name in chosen.hypothesis.names),
+            key=lambda one: -one.present,
+        )
+    )
+    # What is likelier absent than present is not reported.
+    causes = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
+    return Judgement(
+        _verdict(causes, candidates), causes, chosen, tuple(float(w) for w in weights)
+    )
+
+
+def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> bool:
+    """Whether a candidate of the hypothesis is so small that it is none."""
+    for name, part in fitted.hypothesis.parts.items():
+        steps = {term.name: term.step for term in candidates[name].terms}
+        if all(abs(fitted.values[name, t]) < NEGLIGIBLE * abs(steps[t]) for t in part.terms):
+            return True
+    return False
+
+
+def _plausible_score(fitted: Fitted) -> float:
+    """A better fit with an implausible number counts for less."""
+    return fitted.log_score - IMPLAUSIBLE * len(fitted.at_limit)
+
+
+IMPLAUSIBLE = 4.0
+"""What a number at the edge of its plausible range costs, as a logarithm of odds."""
+
+
+def _cause(name: str, chosen: Fitted, fitted: Sequence[Fitted], weights: Array) -> Cause:
+    others = set(chosen.hypothesis.names) - {name}
+    slot: dict[str, float] = defaultdict(float)
+    best: dict[str, Fitted] = {}
+    nobody = 0.0
+    for one, weight in zip(fitted, weights, strict=True):
+        names = set(one.hypothesis.names)
+        if not others <= names:
+            continue
+        extra = names - others
+        if not extra:
+            nobody += float(weight)
+        elif len(extra) == 1 or name in extra:
+            key = name if name in extra else next(iter(extra))
+            slot[key] += float(weight)
+            if key not in best or one.log_score > best[key].log_score:
+                best[key] = one
+    whole = sum(slot.values())
+    everything = whole + nobody
+    ordered = sorted(slot, key=lambda key: -slot[key])
+    head = ordered[0]
+    rivals, covered = [], slot[head] / whole
+    for key in ordered[1:]:
+        if covered >= COVERED or slot[key] < LEAST_SHARE * slot[head]:
+            break
+        rivals.append(Rival(key, slot[key] / everything, best[key]))
+        covered += slot[key] / whole
+    source = chosen if head == name else best[head]
+    part = source.hypothesis.parts[head]
+    return Cause(
+        name=head,
+        probability=slot[head] / everything,
+        present=whole / everything,
+        rivals=tuple(rivals),
+        values={term: source.values[head, term] for term in part.terms},
+        sigmas={term: source.sigmas.get((head, term), 0.0) for term in part.terms},
+        shapes=dict(part.shapes),
+        shape_sigmas={k[1]: v for k, v in source.shape_sigmas.items() if k[0] == head},
+        at_limit=tuple(what for who, what in source.at_limit if who == head),
+    )
+
+
+def _verdict(causes: Sequence[Cause], candidates: Mapping[str, Candidate]) -> str:
+    if any(one.rivals or one.present < CERTAIN for one in causes):
+        return "ambiguous"
+    if all(candidates[one.name].side == "parameter" for one in causes):
+        return "parameter"
+    return "explained"

@@ -1,0 +1,314 @@
+"""A hypothesis fitted in earnest: simulated again with everything free, until it stays."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.calibrate import Calibrated
+from analysis.engine.evidence import Problem, Weighed, weigh
+from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.lens import Lens
+from analysis.engine.screen import Scored
+from analysis.engine.sensitivity import nuisance_columns, simulate_features
+from analysis.engine.state import State
+from analysis.engine.system import Array, Point, System
+
+ROUNDS = 5
+"""Of simulating and solving."""
+
+SETTLED = 0.5
+"""Rounds end when the score rises by less than this."""
+
+FAR_SIGMAS = 3.0
+"""A fit starts with no nuisance farther out than this."""
+
+SHORTER = 0.4
+"""A step that went too far is taken again, this much of it."""
+
+MOST_SETTLING, STILL = 6, 0.01
+"""Steps to where the nuisances are likeliest, and what is no step, in sigmas."""
+
+SHORTEST = 2
+"""And so often."""
+
+ROUNDS_ANEW, SHORTEST_ANEW = 20, 5
+"""The same where everything is simulated anew: the way is longer."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A hypothesis at its best.
+
+    Attributes
+    ----------
+    hypothesis
+        With the fitted shapes.
+    point
+        What was simulated: the best.
+    features
+        Simulated there, shape (f,).
+    problem
+        What is left there.
+    log_score
+        Evidence times prior odds, as a logarithm.
+    weighed
+        The evidence in detail; its factors are what could still be added.
+    values, sigmas
+        (candidate, term) -> magnitude and its standard deviation.
+    shape_sigmas
+        (candidate, shape) -> standard deviation, of the logarithm where it counts so.
+    done, columns
+        Candidate -> what it does to the features there, shape (f,), and its columns, (f, k).
+    at_limit
+        (candidate, number) that ended at the edge of its plausible range.
+    state
+        The free numbers.
+    """
+
+    hypothesis: Hypothesis
+    point: Point
+    features: Array
+    problem: Problem
+    log_score: float
+    weighed: Weighed
+    values: Mapping[tuple[str, str], float]
+    sigmas: Mapping[tuple[str, str], float]
+    shape_sigmas: Mapping[tuple[str, str], float]
+    done: Mapping[str, Array]
+    columns: Mapping[str, Array]
+    at_limit: tuple[tuple[str, str], ...]
+    state: State
+
+
+class Refiner:
+    """Fits hypotheses.
+
+    Parameters
+    ----------
+    system, lens
+        What is simulated and how it is looked at.
+    data
+        Recorded features, shape (f,).
+    calibrated
+        The system at its likeliest parameters; its nuisance columns serve throughout, unless
+    anew
+        What the nuisances do is simulated anew at every step: for a system that is another one
+        with a candidate on.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        lens: Lens,
+        data: Array,
+        calibrated: Calibrated,
+        *,
+        anew: bool = False,
+    ) -> None:
+        self.system = system
+        self.lens = lens
+        self.data = data
+        self.candidates = {one.name: one for one in system.candidates}
+        self._problem = calibrated.problem
+        self._rotation = calibrated.rotation
+        self.anew = anew
+        if anew:
+            # A direction that is not seen here may be seen with a candidate on.
+            self._rotation = np.eye(len(calibrated.at))
+            self._problem = replace(
+                calibrated.problem, nuisance=calibrated.columns, at=calibrated.at
+            )
+
+    def fit(self, start: Scored, rounds: int = ROUNDS, at_least: float = -np.inf) -> Fitted:
+        """From a screened hypothesis to a fitted one.
+
+        Parameters
+        ----------
+        start
+            The screened hypothesis.
+        rounds
+            Of simulating and solving, at most.
+        at_least
+            A hypothesis that is still this far behind after two rounds is left where it is.
+        """
+        nuisance = np.clip(start.weighed.nuisance, -FAR_SIGMAS, FAR_SIGMAS)
+        return self._improve(
+            State.of(start, self.candidates), nuisance, self._problem.used, rounds, at_least
+        )
+
+    def fit_from(self, starts: Sequence[Scored], most: int) -> Fitted:
+        """The best fit of one set of candidates from several starts, the best of which are tried.
+
+        Parameters
+        ----------
+        starts
+            Where to begin.
+        most
+            So many are fitted to the end.
+        """
+        used = self._problem.used
+        begun = []
+        for start in starts:
+            state, nuisance = State.of(start, self.candidates), start.weighed.nuisance
+            begun.append((self._at(state, nuisance, used).log_score, state, nuisance))
+        begun.sort(key=lambda one: -one[0])
+        fitted = [
+            self._improve(state, nuisance, used, ROUNDS) for _, state, nuisance in begun[:most]
+        ]
+        return max(fitted, key=lambda one: one.log_score)
+
+    def again(self, fitted: Fitted, used: NDArray[np.bool_]) -> Fitted:
+        """Fit a hypothesis once more, to other features.
+
+        Parameters
+        ----------
+        fitted
+            From where.
+        used
+            Which features count, shape (f,).
+        """
+        return self._improve(fitted.state, fitted.problem.at, used & self._problem.used, ROUNDS)
+
+    def settle(self, fitted: Fitted) -> Fitted:
+        """The same hypothesis with its nuisances where they are likeliest.
+
+        Evidence counts them as moved to where they would fit, so that a fit may end before they
+        are there; what is to be predicted with is moved.
+
+        Parameters
+        ----------
+        fitted
+            From where.
+        """
+        best, used = fitted, fitted.problem.used
+        for _ in range(MOST_SETTLING):
+            nuisance = best.weighed.nuisance
+            if float(np.abs(nuisance - best.problem.at).max(initial=0.0)) < STILL:
+                break
+            tried = self._at(best.state, nuisance, used)
+            variance = best.weighed.variance
+            if not _misfit(tried, variance, used) < _misfit(best, variance, used):
+                break
+            best = tried
+        return best
+
+    def _improve(
+        self,
+        state: State,
+        nuisance: Array,
+        used: NDArray[np.bool_],
+        rounds: int,
+        at_least: float = -np.inf,
+    ) -> Fitted:
+        best = self._at(state, nuisance, used)
+        for _ in range(ROUNDS):
+            if np.isfinite(best.log_score):
+                break
+            state = state.smaller(SHORTER)
+            best = self._at(state, nuisance, used)
+        share = 1.0
+        rounds = ROUNDS_ANEW if self.anew else rounds
+        shortest = SHORTEST_ANEW if self.anew else SHORTEST
+        for turn in range(rounds - 1):
+            if turn >= 1 and best.log_score < at_least and not self.anew:
+                break
+            there = state.moved(best.weighed.estimate, share)
+            nuisance_there = nuisance + share * (best.weighed.nuisance - nuisance)
+            tried = self._at(there, nuisance_there, used)
+            rise = tried.log_score - best.log_score
+            if rise > 0.0:
+                best, state, nuisance, share = tried, there, nuisance_there, 1.0
+                if rise < SETTLED:
+                    break
+            else:
+                share *= SHORTER
+                if share < 1.01 * SHORTER**shortest:
+                    break
+        return best
+
+    def _at(self, state: State, nuisance: Array, used: NDArray[np.bool_]) -> Fitted:
+        """Simulate there, with a difference for every free number."""
+        count, names = len(state.free), state.hypothesis.names
+        there = self._rotation @ nuisance
+        points = [state.point(there)]
+        if count or names:
+            calm = [state, *(state.bumped(k) for k in range(count))]
+            calm += [state.without(name) for name in names]
+            points += [replace(one.point(there), settled=True) for one in calm]
+        found = simulate_features(self.system, self.lens, points)
+        # With numbers far out a simulation may come to nothing.
+        sound = bool(np.isfinite(found).all())
+        found = np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)
+        features, settled = found[0], found[1:]
+        columns = np.stack(
+            [(settled[1 + k] - settled[0]) / state.signed_step(k) for k in range(count)], axis=1
+        ) if count else np.zeros((len(features), 0))  # fmt: skip
+        # What rings with one hypothesis and not with another is no measure of what it does.
+        done = {
+            name: settled[0] - row for name, row in zip(names, settled[1 + count :], strict=True)
+        }
+        order = [k for name in names for k in state.places(name)]
+        lows, highs = state.bounds()
+        residuals, rows = state.shape_rows()
+        problem = replace(
+            self._problem, residual=self.data - features, at=nuisance, used=used
+        )
+        if self.anew:
+            anew = nuisance_columns(self.system, self.lens, there, effects=points[0].effects)
+            problem = replace(problem, nuisance=anew)
+        by_name = {name: columns[:, state.places(name)] for name in names}
+        weighed = weigh(
+            problem,
+            by_name,
+            done,
+            {name: self.candidates[name].form_share for name in names},
+            lows[order],
+            highs[order],
+            (residuals, rows[:, order]),
+            rounds=1,
+            standing=True,
+        )
+        back = np.argsort(order) if order else np.zeros(0, dtype=int)
+        weighed = replace(
+            weighed,
+            estimate=weighed.estimate[back],
+            covariance=weighed.covariance[np.ix_(back, back)],
+            gains=weighed.gains[back],
+        )
+        spread = np.sqrt(np.maximum(np.diag(weighed.covariance), 0.0))
+        sigmas, shape_sigmas = {}, {}
+        for k, i in enumerate(state.free):
+            number = state.numbers[i]
+            for term in number.terms:
+                sigmas[number.candidate, term] = float(spread[k])
+            if number.shape is not None:
+                shape_sigmas[number.candidate, number.shape.name] = float(spread[k])
+        return Fitted(
+            hypothesis=state.hypothesis,
+            point=points[0],
+            features=features,
+            problem=problem,
+            log_score=(
+                weighed.log_evidence + state.hypothesis.log_prior(self.candidates)
+                if sound
+                else -np.inf
+            ),
+            weighed=weighed,
+            values=state.term_values(),
+            sigmas=sigmas,
+            shape_sigmas=shape_sigmas,
+            done=done,
+            columns=by_name,
+            at_limit=state.at_edge(),
+            state=state,
+        )
+
+
+def _misfit(fitted: Fitted, variance: Array, used: NDArray[np.bool_]) -> float:
+    """Of a simulation as it stands, and of its nuisances to their prior."""
+    if not np.isfinite(fitted.log_score):
+        return float("inf")
+    residual, at = fitted.problem.residual[used], fitted.problem.at
+    return float((residual**2 / variance[used]).sum() + at @ at)

@@ -1,0 +1,263 @@
+"""Screening: every candidate, alone and beside others, weighed to first order."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, bounded, form_variance, weigh
+from analysis.engine.hypothesis import LOG_COST, Hypothesis, Part, part_log_prior
+from analysis.engine.system import Array, Candidate
+
+if TYPE_CHECKING:
+    from analysis.engine.state import State
+
+LOOSE_FORM = 1.5
+"""To first order a law is less certain than simulated: its error of form, times this."""
+
+
+QUICK = (1.0,)
+"""Of choices of terms, only this size of the error of form is weighed."""
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A hypothesis and how well it explains.
+
+    Attributes
+    ----------
+    hypothesis
+        Candidates and terms.
+    log_score
+        Evidence times prior odds, as a logarithm.
+    weighed
+        The evidence in detail; factors are those of `values`.
+    values
+        (candidate, term) -> magnitude.
+    """
+
+    hypothesis: Hypothesis
+    log_score: float
+    weighed: Weighed
+    values: Mapping[tuple[str, str], float]
+
+
+class Screen:
+    """Weighs hypotheses to first order about one simulated point.
+
+    Parameters
+    ----------
+    problem
+        What is left to explain there.
+    candidates
+        By name.
+    terms
+        (candidate, variant) -> columns, shape (f, k), as `Sensitivity.terms` has them.
+    on
+        What is on already in the problem's simulation: candidate -> its part; `done` has what it
+        does to the features.
+    done, own
+        Candidate -> what it does, shape (f,), and columns of its free numbers, shapes among them.
+    state
+        Those numbers.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        candidates: Mapping[str, Candidate],
+        terms: Mapping[tuple[str, int], Array],
+        on: Hypothesis | None = None,
+        done: Mapping[str, Array] | None = None,
+        own: Mapping[str, Array] | None = None,
+        state: "State | None" = None,
+    ) -> None:
+        self.problem = problem
+        self.candidates = candidates
+        self.terms = terms
+        self.on = on or Hypothesis()
+        self._done = dict(done or {})
+        self._own = dict(own or {})
+        self._state = state
+        self._frames: dict[float, Frame] = {}
+
+    def null(self) -> Scored:
+        """What is on already, and nothing else."""
+        return self._score(self.on, {}, ())
+
+    def best_of(self, name: str) -> Scored | None:
+        """The best choice of terms and shapes of one more candidate; None: none helps.
+
+        Terms are added one by one, the best first, each with its own value or all with one, as
+        long as the evidence grows; sets that belong together are tried as wholes.
+        """
+        candidate = self.candidates[name]
+        best: Scored | None = None
+        variant = 0
+        found: list[tuple[float, int, tuple[str, ...], bool]] = []
+        for v in range(len(candidate.variants())):
+            for terms, shared, gain in self._choices(candidate, self.terms[name, v]):
+                part = Part(terms, shared, candidate.variants()[v])
+                found.append((0.5 * gain + part_log_prior(candidate, part), v, terms, shared))
+        # The quick score has the variance of what is on only; the best few are weighed in full.
+        found.sort(key=lambda one: -one[0])
+        seen = set()
+        for _, v, terms, shared in found:
+            if (terms, shared) in seen:
+                continue
+            seen.add((terms, shared))
+            if len(seen) > 5:
+                break
+            part = Part(terms, shared, candidate.variants()[v])
+            scored = self._score(self.on.plus(name, part), {name: v}, (name,), QUICK)
+            if best is None or scored.log_score > best.log_score:
+                best, variant = scored, v
+        if best is None:
+            return None
+        return self._score(best.hypothesis, {name: variant}, (name,))
+
+    def _choices(
+        self, candidate: Candidate, columns: Array
+    ) -> Iterator[tuple[tuple[str, ...], bool, float]]:
+        """Sets of terms worth weighing, with what they would win in chi2."""
+        frame, own = self._quick_frame(candidate)
+        stacked = np.hstack([own, columns])
+        matrix, right = frame.normal(stacked)
+        fixed = own.shape[1]
+        if fixed:
+            # What is on may move as well.
+            inner = np.linalg.pinv(matrix[:fixed, :fixed])
+            cross = matrix[fixed:, :fixed] @ inner
+            right = right[fixed:] - cross @ right[:fixed]
+            matrix = matrix[fixed:, fixed:] - cross @ matrix[:fixed, fixed:]
+        names = tuple(term.name for term in candidate.terms)
+        lows = np.array([term.low for term in candidate.terms])
+        highs = np.array([term.high for term in candidate.terms])
+
+        def gain(chosen: Sequence[int], shared: bool) -> float:
+            pick = np.asarray(chosen, dtype=int)
+            if shared:
+                m = np.array([[matrix[np.ix_(pick, pick)].sum()]])
+                b = np.array([right[pick].sum()])
+                low, high = lows[pick].max(keepdims=True), highs[pick].min(keepdims=True)
+            else:
+                m, b, low, high = matrix[np.ix_(pick, pick)], right[pick], lows[pick], highs[pick]
+            e = bounded(m, b, low, high)
+            return float(2.0 * b @ e - e @ m @ e)
+
+        every = range(len(names))
+        if candidate.together or len(names) == 1:
+            yield names, False, gain(list(every), False)
+            return
+        # One by one, the best next, each with its own value.
+        chosen: list[int] = []
+        limit = candidate.chosen_terms or len(names)
+        current = 0.0
+        while len(chosen) < limit:
+            gains = {i: gain([*chosen, i], False) for i in every if i not in chosen}
+            if not gains:
+                break
+            best = max(gains, key=lambda i: gains[i])
+            if gains[best] - current < 2.0 * LOG_COST and chosen:
+                break
+            chosen.append(best)
+            current = gains[best]
+            yield tuple(names[i] for i in sorted(chosen)), False, current
+            if candidate.shareable and len(chosen) > 1:
+                yield tuple(names[i] for i in sorted(chosen)), True, gain(chosen, True)
+        for whole in candidate.combinations:
+            pick = [names.index(one) for one in whole]
+            if len(pick) <= limit:
+                if candidate.shareable:
+                    yield whole, True, gain(pick, True)
+                yield whole, False, gain(pick, False)
+
+    def _quick_frame(self, candidate: Candidate) -> tuple[Frame, Array]:
+        share = candidate.form_share * LOOSE_FORM
+        if share not in self._frames:
+            # Whatever explains the residual is uncertain by a share of it.
+            variance = self.problem.base + form_variance(
+                self.problem.labels, self.problem.residual, share, 1.0
+            )
+            for name, done in self._done.items():
+                own_share = self.candidates[name].form_share * LOOSE_FORM
+                variance += form_variance(self.problem.labels, done, own_share, 1.0)
+            self._frames[share] = Frame(self.problem, variance)
+        own = (
+            np.hstack(list(self._own.values()))
+            if self._own
+            else np.zeros((len(self.problem.residual), 0))
+        )
+        return self._frames[share], own
+
+    def _score(
+        self,
+        hypothesis: Hypothesis,
+        variants: Mapping[str, int],
+        new: tuple[str, ...],
+        sizes: Sequence[float] = FORM_SIZES,
+    ) -> Scored:
+        columns: dict[str, Array] = dict(self._own)
+        done = dict(self._done)
+        lows: list[float] = []
+        highs: list[float] = []
+        prior: tuple[Array, Array] | None = None
+        values: dict[tuple[str, str], float] = {}
+        kept = 0
+        if self._state is not None and self._own:
+            low, high = self._state.bounds()
+            order = [k for name in self._own for k in self._state.places(name)]
+            lows, highs = list(low[order]), list(high[order])
+            residuals, rows = self._state.shape_rows()
+            prior = (residuals, rows[:, order])
+            kept = len(order)
+        for name in new:
+            part = hypothesis.parts[name]
+            candidate = self.candidates[name]
+            columns[name] = grouped(candidate, self.terms[name, variants[name]], part)
+            done[name] = np.zeros(len(self.problem.residual))
+            for group in groups(part):
+                low_one, high_one = limits(candidate, group)
+                lows.append(low_one)
+                highs.append(high_one)
+        if prior is not None:
+            wider = np.zeros((len(prior[0]), len(lows) - kept))
+            prior = (prior[0], np.hstack([prior[1], wider]))
+        shares = {name: self.candidates[name].form_share * LOOSE_FORM for name in columns}
+        weighed = weigh(
+            self.problem, columns, done, shares, np.array(lows), np.array(highs), prior,
+            rounds=2, sizes=sizes,
+        )
+        if self._state is not None:
+            moved = np.zeros(len(self._state.free))
+            for place, k in enumerate(order if self._own else []):
+                moved[k] = weighed.estimate[place]
+            values |= self._state.moved(moved).term_values()
+        at = kept
+        for name in new:
+            for group in groups(hypothesis.parts[name]):
+                values |= {(name, term): float(weighed.estimate[at]) for term in group}
+                at += 1
+        score = weighed.log_evidence + hypothesis.log_prior(self.candidates)
+        return Scored(hypothesis, score, weighed, values)
+
+
+def groups(part: Part) -> tuple[tuple[str, ...], ...]:
+    """Terms that share a value."""
+    return (part.terms,) if part.shared else tuple((one,) for one in part.terms)
+
+
+def grouped(candidate: Candidate, columns: Array, part: Part) -> Array:
+    """Columns of terms, those with one value added up, shape (f, free numbers)."""
+    names = [term.name for term in candidate.terms]
+    return np.stack(
+        [columns[:, [names.index(one) for one in group]].sum(axis=1) for group in groups(part)],
+        axis=1,
+    )
+
+
+def limits(candidate: Candidate, group: tuple[str, ...]) -> tuple[float, float]:
+    """Bounds of a group's value."""
+    chosen = [term for term in candidate.terms if term.name in group]
+    return max(term.low for term in chosen), min(term.high for term in chosen)

@@ -1,0 +1,115 @@
+"""What each nuisance and each term of each candidate does to the features."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.engine.lens import Lens
+from analysis.engine.system import Array, Candidate, Point, Setting, System
+
+Progress = Callable[[int, int], None]
+"""Told how many points are done, of how many."""
+
+BATCH = 32
+"""Points simulated at a time."""
+
+Columns = dict[tuple[str, int], Array]
+"""(candidate, variant of its shapes) -> what one unit of each term does, shape (f, k)."""
+
+
+def simulate_features(
+    system: System, lens: Lens, points: Sequence[Point], progress: Progress | None = None
+) -> Array:
+    """Features of points, shape (number of points, f); NaN where a simulation came to nothing."""
+    found = np.empty((len(points), lens.size))
+    for first in range(0, len(points), BATCH):
+        part = points[first : first + BATCH]
+        found[first : first + len(part)] = system.simulate(part, lens)
+        if progress is not None:
+            progress(min(first + BATCH, len(points)), len(points))
+    return found
+
+
+def nuisance_columns(
+    system: System,
+    lens: Lens,
+    about: Array,
+    progress: Progress | None = None,
+    effects: Mapping[str, Setting] | None = None,
+) -> Array:
+    """What one sigma of each nuisance does, by differences, shape (f, nuisances).
+
+    Parameters
+    ----------
+    system, lens
+        What is simulated and how it is looked at.
+    about
+        Nuisances about which, in sigmas.
+    progress
+        Told of it.
+    effects
+        Candidates that are on.
+    """
+    on = dict(effects or {})
+    points = [Point(about, on, settled=True)]
+    for i, nuisance in enumerate(system.nuisances):
+        at = about.copy()
+        at[i] += nuisance.step
+        points.append(Point(at, on, settled=True))
+    found = simulate_features(system, lens, points, progress)
+    steps = np.array([one.step for one in system.nuisances])
+    return _finite((found[1:] - found[0]) / steps[:, None]).T
+
+
+def term_columns(
+    system: System,
+    lens: Lens,
+    candidates: Sequence[Candidate],
+    about: Array,
+    nuisance: Array,
+    progress: Progress | None = None,
+    effects: Mapping[str, Setting] | None = None,
+) -> Columns:
+    """What one unit of each term of each candidate does, for each variant of its shapes.
+
+    Parameters
+    ----------
+    system, lens
+        What is simulated and how it is looked at.
+    candidates
+        Those to look at.
+    about
+        Nuisances about which, in sigmas.
+    nuisance
+        What those do: a candidate's term that is a nuisance is not simulated again.
+    progress
+        Told of it.
+    effects
+        Others that are on.
+    """
+    base = Point(about, dict(effects or {}), settled=True)
+    points = [base]
+    places: list[tuple[str, int, int, float]] = []
+    same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
+    columns: Columns = {}
+    for candidate in candidates:
+        for v, shapes in enumerate(candidate.variants()):
+            columns[candidate.name, v] = np.zeros((lens.size, len(candidate.terms)))
+            for k, term in enumerate(candidate.terms):
+                i = same.get((candidate.name, term.name))
+                if i is not None:
+                    columns[candidate.name, v][:, k] = nuisance[:, i] / system.nuisances[i].sigma
+                    continue
+                places.append((candidate.name, v, k, term.step))
+                setting = Setting({term.name: term.step}, shapes)
+                points.append(replace(base, effects={**base.effects, candidate.name: setting}))
+    found = simulate_features(system, lens, points, progress)
+    for (name, v, k, step), row in zip(places, found[1:], strict=True):
+        columns[name, v][:, k] = _finite((row - found[0]) / step)
+    return columns
+
+
+def _finite(change: Array) -> Array:
+    """A simulation that came to nothing tells nothing."""
+    return np.nan_to_num(change, nan=0.0, posinf=0.0, neginf=0.0)

@@ -1,0 +1,195 @@
+"""The free numbers of a hypothesis: magnitudes and shapes, in one vector."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import exp, log
+
+import numpy as np
+
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.screen import Scored, groups, limits
+from analysis.engine.system import Array, Candidate, Point, Setting, Shape
+
+SHAPE_STEP = 0.05
+"""Difference of a shape: of its logarithm, or of its range."""
+
+SHAPE_WIDTH = 0.25
+"""Prior of a shape about its default: this share of its (logarithmic) range."""
+
+MAGNITUDE_STEP = 0.02
+"""Difference of a magnitude: of itself, and of the size it is screened at."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """One free number: a magnitude of terms, or a shape."""
+
+    candidate: str
+    terms: tuple[str, ...]
+    shape: Shape | None
+    low: float
+    high: float
+    step: float
+
+
+@dataclass(frozen=True)
+class State:
+    """Numbers of a hypothesis with their values; shapes as logarithms where they count so."""
+
+    hypothesis: Hypothesis
+    candidates: Mapping[str, Candidate]
+    numbers: tuple[Number, ...]
+    values: Array
+
+    @classmethod
+    def of(cls, scored: Scored, candidates: Mapping[str, Candidate]) -> "State":
+        """From a screened hypothesis."""
+        numbers, values = [], []
+        for name in scored.hypothesis.names:
+            candidate, part = candidates[name], scored.hypothesis.parts[name]
+            for group in groups(part):
+                low, high = limits(candidate, group)
+                value = scored.values[name, group[0]]
+                size = next(t.step for t in candidate.terms if t.name == group[0])
+                step = 0.0 if candidate.fixed else MAGNITUDE_STEP * (abs(value) + abs(size))
+                numbers.append(Number(name, group, None, low, high, step))
+                values.append(size if candidate.fixed else float(np.clip(value, low, high)))
+            for shape in candidate.shapes:
+                if not shape.whole:
+                    at = part.shapes.get(shape.name, shape.default)
+                    numbers.append(
+                        Number(name, (), shape, _in(shape, shape.low), _in(shape, shape.high),
+                               _shape_step(shape))
+                    )  # fmt: skip
+                    values.append(_in(shape, at))
+        # A magnitude that is not free has no difference.
+        return cls(scored.hypothesis, candidates, tuple(numbers), np.array(values))
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Places of the numbers that a fit moves."""
+        return tuple(i for i, one in enumerate(self.numbers) if one.step > 0.0)
+
+    def places(self, name: str) -> list[int]:
+        """Places, among the free, of one candidate's numbers."""
+        return [k for k, i in enumerate(self.free) if self.numbers[i].candidate == name]
+
+    def point(self, nuisance: Array) -> Point:
+        """What is to be simulated."""
+        effects = {}
+        for name in self.hypothesis.names:
+            values: dict[str, float] = {}
+            shapes = dict(self.hypothesis.parts[name].shapes)
+            for number, value in zip(self.numbers, self.values, strict=True):
+                if number.candidate != name:
+                    continue
+                if number.shape is None:
+                    values |= dict.fromkeys(number.terms, float(value))
+                else:
+                    shapes[number.shape.name] = _out(number.shape, float(value))
+            effects[name] = Setting(values, shapes)
+        return Point(nuisance, effects)
+
+    def bumped(self, free: int) -> "State":
+        """With one free number moved by its step, inwards where it stands at its edge."""
+        values = self.values.copy()
+        values[self.free[free]] += self.signed_step(free)
+        return replace(self, values=values)
+
+    def signed_step(self, free: int) -> float:
+        """The step of a free number."""
+        number = self.numbers[self.free[free]]
+        value = self.values[self.free[free]]
+        return -number.step if value + number.step > number.high else number.step
+
+    def moved(self, change: Array, share: float = 1.0) -> "State":
+        """With the free numbers moved, within their ranges."""
+        values = self.values.copy()
+        for k, i in enumerate(self.free):
+            number = self.numbers[i]
+            values[i] = np.clip(values[i] + share * change[k], number.low, number.high)
+        parts = dict(self.hypothesis.parts)
+        for number, value in zip(self.numbers, values, strict=True):
+            if number.shape is not None:
+                part = parts[number.candidate]
+                shapes = {**part.shapes, number.shape.name: _out(number.shape, float(value))}
+                parts[number.candidate] = replace(part, shapes=shapes)
+        return replace(self, hypothesis=Hypothesis(parts), values=values)
+
+    def smaller(self, share: float) -> "State":
+        """With its magnitudes this much of themselves."""
+        values = self.values.copy()
+        for i in self.free:
+            if self.numbers[i].shape is None:
+                values[i] *= share
+        return replace(self, values=values)
+
+    def without(self, name: str) -> "State":
+        """With one candidate off."""
+        keep = [i for i, one in enumerate(self.numbers) if one.candidate != name]
+        return State(
+            self.hypothesis.without(name),
+            self.candidates,
+            tuple(self.numbers[i] for i in keep),
+            self.values[keep],
+        )
+
+    def bounds(self) -> tuple[Array, Array]:
+        """How far the free numbers may move from here, shapes by a third of their range a time."""
+        lows, highs = [], []
+        for i in self.free:
+            number, value = self.numbers[i], self.values[i]
+            low, high = number.low - value, number.high - value
+            if number.shape is not None:
+                most = (number.high - number.low) / 3.0
+                low, high = max(low, -most), min(high, most)
+            lows.append(low)
+            highs.append(high)
+        return np.array(lows), np.array(highs)
+
+    def shape_rows(self) -> tuple[Array, Array]:
+        """Priors of the shapes as rows of a fit: residuals (s,) and columns (s, free numbers)."""
+        residuals, rows = [], []
+        for k, i in enumerate(self.free):
+            number = self.numbers[i]
+            if number.shape is None:
+                continue
+            width = SHAPE_WIDTH * (number.high - number.low)
+            row = np.zeros(len(self.free))
+            row[k] = 1.0 / width
+            rows.append(row)
+            residuals.append((_in(number.shape, number.shape.default) - self.values[i]) / width)
+        return np.array(residuals), np.array(rows).reshape(len(rows), len(self.free))
+
+    def term_values(self) -> dict[tuple[str, str], float]:
+        """(candidate, term) -> magnitude."""
+        return {
+            (number.candidate, term): float(value)
+            for number, value in zip(self.numbers, self.values, strict=True)
+            for term in number.terms
+        }
+
+    def at_edge(self) -> tuple[tuple[str, str], ...]:
+        """Numbers at an edge of their range that is not zero, with their candidate."""
+        found = []
+        for number, value in zip(self.numbers, self.values, strict=True):
+            if not number.step:
+                continue
+            reach = 1e-3 * (number.high - number.low)
+            low = value <= number.low + reach and number.low != 0.0
+            if low or value >= number.high - reach:
+                what = number.shape.name if number.shape else number.terms[0]
+                found.append((number.candidate, what))
+        return tuple(found)
+
+
+def _in(shape: Shape, value: float) -> float:
+    return log(value) if shape.logarithmic else value
+
+
+def _out(shape: Shape, value: float) -> float:
+    return exp(value) if shape.logarithmic else value
+
+
+def _shape_step(shape: Shape) -> float:
+    return SHAPE_STEP if shape.logarithmic else SHAPE_STEP * (shape.high - shape.low)

@@ -1,0 +1,1 @@
+"""`analysis report`: one self-contained page about one run."""

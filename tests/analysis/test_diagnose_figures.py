@@ -1,0 +1,100 @@
+"""The figures of a diagnosis, on arrays made by hand."""
+
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnosis_stand_ins import FRICTION_N, NOISE_N, pictures, result, statement
+
+from analysis.diagnosis.figure_maps import PHASES, by_phase
+from analysis.diagnosis.figure_style import DARK, LIGHT, Look, most_off
+from analysis.diagnosis.figures import drawings, drawn, write_figures
+from analysis.diagnosis.pictures import Pictures
+from analysis.diagnosis.results import read, write
+from cdpr8.errors import DataError
+
+NAMES = ["map", "loops", "speed", "fit", "ranking", "improvement"]
+
+
+def test_all_of_them_are_there() -> None:
+    assert [name for name, _ in drawings(statement(), pictures())] == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("look", [LIGHT, replace(DARK, narrow=True)], ids=["screen", "phone"])
+def test_each_is_drawn_in_its_colours_and_width(name: str, look: Look) -> None:
+    from matplotlib.image import imread
+
+    image = imread(BytesIO(drawn(dict(drawings(statement(), pictures()))[name], look)))
+    assert image.shape[1] == pytest.approx(150 * look.width, abs=1)
+    paper = [int(look.paper[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
+    assert np.allclose(image[-1, -1, :3], paper, atol=0.01)
+    assert (np.abs(image[..., :3] - paper).max(axis=-1) > 0.1).mean() > 0.005
+
+
+def test_nothing_named_has_nothing_after() -> None:
+    unnamed = replace(pictures(), named=False)
+    said = statement("none", [])
+    for name, draw in drawings(said, unnamed):
+        assert drawn(draw, LIGHT), name
+
+
+def test_friction_stands_out_by_phase_as_a_square_and_is_gone_after() -> None:
+    before = by_phase(pictures(), "hand", "before")[0]
+    assert before.shape == (PHASES,)
+    stretching = np.cos(2.0 * np.pi * (np.arange(PHASES) + 0.5) / PHASES) > 0.3
+    assert before[stretching] == pytest.approx(FRICTION_N / NOISE_N, rel=0.1)
+    assert np.abs(by_phase(pictures(), "hand", "after")[0]).max() < 2.0
+
+
+def test_the_cable_farthest_off_is_the_one_shown() -> None:
+    own = pictures()
+    first, second = own.of("hand", "tension")
+    assert most_off((first, replace(second, before=second.before + 5.0 * second.rate_m_per_s)))
+    assert most_off(()) is None
+    doubled = replace(second, recorded=2.0 * second.recorded)
+    chosen = most_off((first, doubled))
+    assert chosen is not None
+    assert chosen.cable == 2
+
+
+def test_what_is_written_is_read_back(tmp_path: Path) -> None:
+    made = result()
+    write(made, tmp_path)
+    found = read(tmp_path)
+    assert found is not None
+    assert found.statement == made.statement
+    assert found.pictures is not None
+    assert found.pictures.records == pictures().records
+    for one, other in zip(found.pictures.channels, pictures().channels, strict=True):
+        assert np.allclose(one.recorded, other.recorded, rtol=1e-6)
+        assert np.array_equal(one.t_s, other.t_s)
+    assert "# Diagnosis of hand" in (tmp_path / "diagnose.md").read_text(encoding="utf-8")
+
+
+def test_nothing_there_is_nothing_and_a_torn_file_is_told(tmp_path: Path) -> None:
+    assert read(tmp_path) is None
+    (tmp_path / "diagnose.json").write_text('{"verdict": ')
+    with pytest.raises(DataError, match="cannot be read"):
+        read(tmp_path)
+
+
+def test_files_have_the_figures_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    two = {name: draw for name, draw in drawings(statement(), pictures()) if name in NAMES[-2:]}
+    monkeypatch.setattr("analysis.diagnosis.figures.drawings", lambda *_: two.items())
+    written = write_figures(statement(), pictures(), tmp_path)
+    assert {path.name for path in written} == {
+        f"diagnose_{name}.{ending}" for name in NAMES[-2:] for ending in ("png", "svg")
+    }
+
+
+def test_a_campaign_has_figures_of_every_run() -> None:
+    own = pictures()
+    other = replace(own.records[0], name="second")
+    more = tuple(replace(one, record="second") for one in own.channels)
+    both = Pictures((*own.records, other), (*own.channels, *more), True)
+    names = [name for name, _ in drawings(statement(), both)]
+    assert "map_hand" in names
+    assert "fit_second" in names
