@@ -51,6 +51,10 @@ class Steady:
         The same of the tension, about what follows the elongation, shape (8,).
     moved_m
         Amplitude of the elongation at the drive's frequency, shape (8,).
+    axis_noise
+        As `pose_noise_m`, of the pose's own axes, shape (6,), m and rad.
+    middle_s
+        Of the steady motion.
     """
 
     hertz: float
@@ -61,6 +65,8 @@ class Steady:
     pose_noise_m: Array
     tension_noise_n: Array
     moved_m: Array
+    axis_noise: Array
+    middle_s: float
 
     @property
     def circular(self) -> float:
@@ -157,9 +163,11 @@ def steady(recording: Recording) -> Steady:
     machine = Machine.from_rig(recording.rig)
     left = value - basis @ coefficients
     along = length_gradient(machine, coefficients[0])
-    pose_noise = np.array(
-        [np.sqrt(2.0 * noise_level(t_s, left @ row, hertz) / len(t_s)) for row in along]
-    )
+
+    def noise_of(along: Array) -> Array:
+        levels = [noise_level(t_s, left @ row, hertz) for row in along]
+        return np.sqrt(2.0 * np.array(levels) / len(t_s))
+
     times, values = [np.zeros(0)] * 8, [np.zeros(0)] * 8
     for cable, bundle in zip(recording.cables, recording.bundles, strict=False):
         inside = (bundle.t_s >= window[0]) & (bundle.t_s < window[1])
@@ -170,9 +178,11 @@ def steady(recording: Recording) -> Steady:
         tension_t_s=tuple(times),
         tension_n=tuple(values),
         pose=coefficients,
-        pose_noise_m=pose_noise,
+        pose_noise_m=noise_of(along),
         tension_noise_n=np.full(8, np.inf),
         moved_m=np.hypot(*(along @ coefficients[1:3].T).T),
+        axis_noise=noise_of(np.eye(6)),
+        middle_s=(window[0] + window[1]) / 2.0,
     )
     noise = np.full(8, np.inf)
     for i in range(8):

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.measurements import Measurement, measurement
@@ -21,10 +22,8 @@ ENOUGH = float(np.log(20.0))
 
 MOST_RIVALS = 4
 
-IN_EARNEST = 4
-"""Experiments that are looked at with everything uncertain, the most promising."""
-
-CAMPAIGN = 5
+IN_EARNEST, CAMPAIGN = 3, 5
+"""Experiments that are looked at with everything uncertain: for the next one, for a campaign."""
 
 NOTHING = "nothing left out"
 
@@ -55,23 +54,59 @@ class Outlook:
         return self.bits / self.experiment.minutes
 
 
-@dataclass(frozen=True)
 class Survey:
-    """Rivals, and the experiments that were looked at, the most telling a minute first."""
+    """Rivals, and what could be recorded to tell them apart.
 
-    rivals: tuple[Rival, ...]
-    outlooks: tuple[Outlook, ...]
+    Parameters
+    ----------
+    machine, diagnosis
+        The runs and what was found.
+    rivals
+        What is to be told apart.
+    workers
+        Threads.
+    tell
+        Told of progress.
+    """
 
-    @property
-    def weights(self) -> Array:
-        """Probabilities of the rivals."""
-        return np.array([one.probability for one in self.rivals])
+    def __init__(
+        self,
+        machine: RecordedMachine,
+        diagnosis: Diagnosis,
+        rivals: tuple[Rival, ...],
+        workers: int = 2,
+        tell: Tell | None = None,
+    ) -> None:
+        self.rivals = rivals
+        self.weights = np.array([one.probability for one in rivals])
+        effects = sorted({name for one in rivals for name in one.fitted.hypothesis.names})
+        asked = experiments(machine.recordings, effects)
+        promising = []
+        for i, experiment in enumerate(asked):
+            with threadpool_limits(1):
+                seen = Telling(machine, diagnosis.calibrated.rotation, rivals, experiment, workers)
+            bits = information_bits(seen.at_most(), self.weights)
+            promising.append((-bits / experiment.minutes, i, experiment, seen))
+            if tell is not None:
+                tell("simulating what could be recorded next", i + 1, len(asked))
+        self._left = sorted(promising, key=lambda one: one[:2])
+        self._outlooks: list[Outlook] = []
+
+    def outlooks(self, count: int) -> list[Outlook]:
+        """The most promising with everything uncertain, the most telling a minute first."""
+        while self._left and len(self._outlooks) < count:
+            _, _, experiment, seen = self._left.pop(0)
+            with threadpool_limits(1):
+                log_odds = seen.log_odds()
+            bits = information_bits(log_odds, self.weights)
+            self._outlooks.append(Outlook(experiment, log_odds, bits))
+        return sorted(self._outlooks, key=lambda one: -one.bits_per_minute)
 
 
 def survey(
     machine: RecordedMachine, diagnosis: Diagnosis, workers: int = 2, tell: Tell | None = None
 ) -> Survey | None:
-    """Look at what could be recorded next.
+    """Look at what could be recorded next; None: there are no two explanations to tell apart.
 
     Parameters
     ----------
@@ -81,35 +116,9 @@ def survey(
         Threads.
     tell
         Told of progress.
-
-    Returns
-    -------
-    Survey or None
-        None: there are no two explanations to tell apart.
     """
     rivals = _rivals(diagnosis)
-    if len(rivals) < 2:
-        return None
-    weights = np.array([one.probability for one in rivals])
-    effects = sorted({name for one in rivals for name in one.fitted.hypothesis.names})
-    asked = experiments(machine.recordings, effects)
-    promising = []
-    for i, experiment in enumerate(asked):
-        seen = Telling(machine, diagnosis.calibrated.rotation, rivals, experiment, workers)
-        bits = information_bits(seen.at_most(), weights)
-        promising.append((bits / experiment.minutes, i, seen, experiment))
-        if tell is not None:
-            tell("simulating what could be recorded next", i + 1, len(asked) + IN_EARNEST)
-    promising.sort(key=lambda one: (-one[0], one[1]))
-    outlooks: list[Outlook] = []
-    for place, (_, _, seen, experiment) in enumerate(promising[:IN_EARNEST]):
-        log_odds = seen.log_odds()
-        outlooks.append(Outlook(experiment, log_odds, information_bits(log_odds, weights)))
-        if tell is not None:
-            tell("simulating what could be recorded next", len(asked) + place + 1,
-                 len(asked) + IN_EARNEST)  # fmt: skip
-    outlooks.sort(key=lambda one: -one.bits_per_minute)
-    return Survey(rivals, tuple(outlooks))
+    return Survey(machine, diagnosis, rivals, workers, tell) if len(rivals) > 1 else None
 
 
 def _rivals(diagnosis: Diagnosis) -> tuple[Rival, ...]:
@@ -179,10 +188,10 @@ def next_experiment(
     if judgement.verdict != "ambiguous" or looked is None:
         return _check(judgement)
     names = [one.name for one in looked.rivals]
-    useful = [one for one in looked.outlooks if one.log_odds[0, 1:].max() > ENOUGH]
+    outlooks = looked.outlooks(IN_EARNEST)
+    useful = [one for one in outlooks if one.log_odds[0, 1:].max() > ENOUGH]
     if not useful:
-        best = looked.outlooks[0] if looked.outlooks else None
-        odds = None if best is None else float(best.log_odds[0, 1:].max())
+        odds = max((float(one.log_odds[0, 1:].max()) for one in outlooks), default=None)
         return _measured(measurement(names[0], names[1]), names[:2], odds)
     best = useful[0]
     told = [k for k in range(1, len(names)) if best.log_odds[0, k] > ENOUGH]
@@ -193,8 +202,10 @@ def next_experiment(
     left = [names[k] for k in range(1, len(names)) if k not in told]
     said["leaves"] = left
     if left:
-        beside = measurement(names[0], left[0])
-        said["what"] += f"; against {left[0]} it tells little, for that {beside.what}"
+        k = names.index(left[0])
+        then = next((one for one in outlooks if one.log_odds[0, k] > ENOUGH), None)
+        how = measurement(names[0], left[0]).what if then is None else f"record {then.experiment.what}"
+        said["what"] += f". Against {left[0]} it tells little; for that, {how}"
     return said
 
 
@@ -212,7 +223,7 @@ def campaign(
     results
         Folder that takes `next_1.toml` and so on; None: nothing is written.
     """
-    left, order = list(looked.outlooks), []
+    left, order = looked.outlooks(CAMPAIGN), []
     known = np.zeros((len(looked.rivals), len(looked.rivals)))
     while left and len(order) < CAMPAIGN:
         have = information_bits(known, looked.weights)

@@ -5,12 +5,14 @@ tensions to friction and hysteresis.
 """
 
 from collections.abc import Mapping, Sequence
+from math import log
 from typing import Any
 
 import numpy as np
 
 from analysis.diagnosis.candidates import FRICTIONS
 from analysis.diagnosis.pictures import Pictures
+from analysis.diagnosis.spelling import odds
 
 CAMERA = ("camera_exposure", "frames_dropped")
 """What a slow camera may do beside sampling rarely."""
@@ -75,3 +77,61 @@ def best_with(
 
 def _rms(parts: Sequence[Any]) -> float:
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def in_words(said: Mapping[str, Any]) -> str:
+    """The paper's guesses, weighed, as the statement has them."""
+    told = said.get("paper_guesses") or {}
+    texts = []
+    camera = told.get("camera_rate")
+    if camera:
+        share = camera["share"]
+        gap = camera["simulated_deg"] - camera["recorded_deg"]
+        texts.append(
+            "The paper suspects the camera's rate behind the smaller measured angle. Seen only at "
+            f"the camera's frames, the simulated {camera['simulated_deg']:.3f} deg would read "
+            f"{camera['at_frames_deg']:.3f} deg, against {camera['recorded_deg']:.3f} deg "
+            "recorded: "
+            + (
+                f"the rate makes {100.0 * share:.0f} % of the difference"
+                + (", so it is not the reason." if share < 0.5 else ".")
+                if abs(gap) > 0.005
+                else "there is no difference to explain."
+            )
+        )
+        exposure = camera["log_odds"].get("camera_exposure")
+        if exposure is not None and exposure < -log(20.0):
+            texts.append(f"A long exposure instead is ruled out, {odds(-exposure)}.")
+    content = told.get("frequency_content")
+    if content:
+        texts.append(_frequency_content(said, content))
+    return " ".join(texts)
+
+
+def _frequency_content(said: Mapping[str, Any], content: Mapping[str, Any]) -> str:
+    text = (
+        "It suspects friction and hysteresis behind the frequency content of the tensions. At the "
+        f"second to tenth harmonic the tensions are {content['before']:.3g} times the noise off "
+    )
+    if not said["causes"]:
+        return text + "with nothing left out, and neither is asked for."
+    text += f"before and {content['after']:.3g} times after."
+    friction, hysteresis = content["friction_log_odds"], content["hysteresis_log_odds"]
+    if friction is None and hysteresis is None:
+        return text + " Neither was near enough to be fitted."
+    if friction is not None and (hysteresis is None or friction > hysteresis):
+        text += " Friction"
+        against, of = hysteresis, "hysteresis of the cables without friction"
+        best = friction
+    else:
+        text += " Hysteresis of the cables"
+        against, of = friction, "friction at the pulleys"
+        best = hysteresis
+    text += (
+        " is in the best explanation"
+        if best == 0.0
+        else f" is {odds(-(best or 0.0))} behind the best"
+    )
+    if against is None:
+        return text + f"; {of} was not near enough to be fitted."
+    return text + f"; {of} is {odds((best or 0.0) - against)} behind it."

@@ -93,6 +93,7 @@ def diagnose_runs(
     seed: int = 0,
     rig: Rig | None = None,
     workers: int = 2,
+    look_ahead: bool = False,
 ) -> dict[str, Any]:
     """Diagnose run folders of one machine.
 
@@ -108,6 +109,9 @@ def diagnose_runs(
         The machine, where it is not the runs' own.
     workers
         Threads.
+    look_ahead
+        Whether to simulate what could be recorded next, where the verdict is ambiguous: some
+        seconds more.
 
     Returns
     -------
@@ -115,8 +119,16 @@ def diagnose_runs(
         The JSON of design, section 6.
     """
     del seed
-    recordings = prepare(folders, rig=rig)
-    return diagnose_recordings(recordings, results=results, workers=workers).statement
+    found = diagnose_recordings(prepare(folders, rig=rig), results=results, workers=workers)
+    if look_ahead:
+        from analysis.diagnosis.experiments import next_experiment, survey
+
+        ambiguous = found.diagnosis.verdict == "ambiguous"
+        looked = survey(found.machine, found.diagnosis, workers) if ambiguous else None
+        found.statement["next_experiment"] = next_experiment(
+            found.machine, found.diagnosis, looked, results
+        )
+    return found.statement
 
 
 def one_thread_each() -> AbstractContextManager[object]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from analysis.diagnosis.spelling import listed, number, percent, scaled
-from analysis.diagnosis.titles import parameter_name, short, title, together
+from analysis.diagnosis.titles import parameter_name, rival, short, title, together
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -191,7 +191,7 @@ def campaign(said: Statement) -> Rows:
             f"{one['bits']:.2f}",
             f"{one['minutes']:.1f}",
             f"{one['bits_per_minute']:.2f}",
-            listed([together([name]) for name in one["separates"]]),
+            " / ".join(rival(name) for name in one["separates"]),
             one.get("command") or "",
         )
         for one in said.get("campaign") or []

@@ -66,6 +66,11 @@ def together(effects: list[str]) -> str:
     return " + ".join(short(one) for one in effects) if effects else "nothing left out"
 
 
+def rival(name: str) -> str:
+    """An explanation named by its effects' identifiers, "a and b", in words."""
+    return together(name.split(" and "))
+
+
 _AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 
 _PLAIN: Mapping[str, str] = {

@@ -175,7 +175,7 @@ def form_variance(labels: Labels, done: Array, share: float, size: float) -> Arr
 
 
 def group_power(labels: Labels, features: Array) -> Array:
-    """Squared size of each feature's group: cosine and sine; of a band of lines, the mean line's."""
+    """Squared size of each feature's group: cosine and sine; of a band of lines, the mean."""
     total, count = np.bincount(labels.group, features**2), np.bincount(labels.group)
     mean = np.where(labels.every, total[labels.group] / count[labels.group], total[labels.group])
     return np.asarray(mean)

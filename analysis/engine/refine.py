@@ -112,6 +112,7 @@ class Refiner:
         self.data = data
         self.candidates = {one.name: one for one in system.candidates}
         self._problem = calibrated.problem
+        self._calibrated = calibrated
         self._rotation = calibrated.rotation
         self.anew = anew
         if anew:
@@ -171,7 +172,7 @@ class Refiner:
         """
         return self._improve(fitted.state, fitted.problem.at, used & self._problem.used, ROUNDS)
 
-    def settle(self, fitted: Fitted) -> Fitted:
+    def settle(self, fitted: Fitted, *, anew: bool = False) -> Fitted:
         """The same hypothesis with its nuisances where they are likeliest.
 
         Evidence counts them as moved to where they would fit, so that a fit may end before they
@@ -181,8 +182,14 @@ class Refiner:
         ----------
         fitted
             From where.
+        anew
+            Simulate anew what the nuisances do, and fit once more with that.
         """
         best, used = fitted, fitted.problem.used
+        if anew and not self.anew:
+            closer = Refiner(self.system, self.lens, self.data, self._calibrated, anew=True)
+            best = closer._improve(fitted.state, fitted.point.nuisance, used, ROUNDS)
+            return closer.settle(best)
         for _ in range(MOST_SETTLING):
             nuisance = best.weighed.nuisance
             if float(np.abs(nuisance - best.problem.at).max(initial=0.0)) < STILL:

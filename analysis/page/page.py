@@ -8,7 +8,7 @@ from analysis.diagnosis.figures import drawings
 from analysis.diagnosis.pictures import Pictures
 from analysis.diagnosis.spelling import listed, sentence
 from analysis.diagnosis.tables import Rows, campaign, causes, fit, located, parameters, rivals
-from analysis.diagnosis.titles import together
+from analysis.diagnosis.titles import rival, together
 from analysis.diagnosis.words import headline
 from analysis.page.figure import alt_text, figure, kind_of
 from analysis.page.gather import Material
@@ -159,7 +159,7 @@ def _experiment(said: Mapping[str, Any]) -> str:
     if experiment.get("command"):
         text += f"<p><code>{escape(experiment['command'])}</code></p>"
     if experiment.get("separates"):
-        names = listed([together([one]) for one in experiment["separates"]])
+        names = listed([rival(one) for one in experiment["separates"]])
         text += f"<p>It would tell of {escape(names)}.</p>"
     return _block("Next experiment", text + _table(campaign(said)))
 

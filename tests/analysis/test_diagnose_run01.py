@@ -60,7 +60,7 @@ def test_friction_at_the_pulleys_is_named(found: Result) -> None:
 def test_every_cables_friction_is_what_made_it(found: Result) -> None:
     sized = friction_of_cables(found.statement)
     for cable, true in true_friction().items():
-        assert sized[cable] == pytest.approx(true, rel=0.15), f"cable {cable}"
+        assert sized.get(cable, 0.0) == pytest.approx(true, rel=0.15), f"cable {cable}"
 
 
 def test_the_three_comparisons_of_the_paper_agree_with_the_improved_rig(

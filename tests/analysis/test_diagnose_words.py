@@ -6,12 +6,13 @@ from typing import Any
 import pytest
 from diagnosis_stand_ins import cause, statement
 
+from analysis.diagnosis.guesses import in_words as guesses
 from analysis.diagnosis.phrases import PHRASES, phrase
 from analysis.diagnosis.schema import Statement, statement_schema
 from analysis.diagnosis.spelling import listed, number, odds, percent
 from analysis.diagnosis.tables import markdown, tables
 from analysis.diagnosis.titles import SHORT, parameter_name
-from analysis.diagnosis.words import guesses, headline, paragraph, ruled_out, sections
+from analysis.diagnosis.words import headline, paragraph, ruled_out, sections
 from cdpr8.terminal import say_table
 from model.library.discovery import library
 

@@ -21,8 +21,9 @@ The engine that finds what a simulation of CDPR-8 leaves out (`analysis/engine`,
 [engine.md](engine.md)) on three public recordings of things that are no cable robot. Each is
 described in at most 150 lines under `tests/validation/`: a linear model, how well its numbers are
 known, and some ten candidates, most of them wrong. Nothing is named, and no number fitted, by the
-test records. `python -m tests.validation.report` writes this page, `pytest tests/validation` holds
-its figures to their bars.
+test records; how far a simulation and a law may be trusted (noise, form) was set by hand for each
+description, with these figures in view. `python -m tests.validation.report` writes this page,
+`pytest tests/validation` holds its figures to their bars.
 
 | recording | judged by | before | after | published |
 |---|---|---|---|---|
@@ -137,8 +138,8 @@ def page() -> str:
         text += (
             f"Cascaded tanks: with `{one.term}` at {one.value:.2g} ± {one.sigma:.1g} {one.unit}, "
             f"outside of its plausible range of {one.low:g} to {one.high:g}, the level would be "
-            f"foretold to {pair.rmse(one.fitted.point, 'test'):.3g} V. No tank leaks inwards: it is "
-            "said here, and not named.\n"
+            f"foretold to {pair.rmse(one.fitted.point, 'test'):.3g} V. No tank leaks inwards: "
+            "it is said here, and not named.\n"
         )
     return text
 

@@ -1,7 +1,7 @@
 """The engine on each data set, once, and its figures beside others'."""
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -37,13 +37,13 @@ class Run:
     diagnosis: Diagnosis
     judged: Described
 
-    @property
+    @cached_property
     def before(self) -> Point:
         """Nothing left out, parameters fitted."""
         assert self.diagnosis.search is not None
         return self._settled(self.diagnosis.search.null).point
 
-    @property
+    @cached_property
     def chosen(self) -> Fitted:
         """The verdict's hypothesis."""
         assert self.diagnosis.judgement is not None
@@ -68,7 +68,7 @@ class Run:
 
     def _settled(self, fitted: Fitted) -> Fitted:
         assert self.diagnosis.search is not None
-        return self.diagnosis.search.refiner.settle(fitted)
+        return self.diagnosis.search.refiner.settle(fitted, anew=True)
 
     def rmse(self, point: Point, part: str, start_s: float = -1.0, end_s: float = 1e9) -> float:
         """Of a part, in its unit."""

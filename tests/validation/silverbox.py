@@ -4,7 +4,7 @@ Data: Wigren and Schoukens, "Three free data sets for development and benchmarki
 system identification", ECC 2013. Trained on the multisine, judged on the arrow, which is louder.
 """
 
-from functools import cache
+from functools import cache, partial
 from typing import Literal
 
 import numba
@@ -76,20 +76,19 @@ def run(u, h, p):  # type: ignore[no-untyped-def]
     return found
 
 
+law = partial(candidate, form_share=0.02)  # a circuit's laws are good to some percent
 CANDIDATES = (
-    candidate("cubic", "a spring that hardens with the cube", "1/V^2", -50.0, 50.0, 1.0),
-    candidate("quadratic", "a spring that differs by side", "1/V", -10.0, 10.0, 0.1),
-    candidate("quintic", "a spring with the fifth power", "1/V^4", -5e3, 5e3, 100.0),
-    candidate("delay", "the output is read late", "s", -2e-3, 2e-3, 2e-5, side="clock",
-              form_share=0.02),
-    candidate("damper_displaced", "damping that grows with displacement", "1/V^2", -500.0, 500.0,
+    law("cubic", "a spring that hardens with the cube", "1/V^2", -50.0, 50.0, 1.0),
+    law("quadratic", "a spring that differs by side", "1/V", -10.0, 10.0, 0.1),
+    law("quintic", "a spring with the fifth power", "1/V^4", -5e3, 5e3, 100.0),
+    law("delay", "the output is read late", "s", -2e-3, 2e-3, 2e-5, side="clock"),
+    law("damper_displaced", "damping that grows with displacement", "1/V^2", -500.0, 500.0,
               5.0),
-    candidate("damper_quadratic", "damping with the square of speed", "1/V", -20.0, 20.0, 0.05),
-    candidate("friction", "friction of one size", "V/s^2", 0.0, 1e3, 20.0),
-    candidate("drive_cubic", "an input that saturates", "1/V^2", -50.0, 50.0, 0.5, side="drive"),
-    candidate("sensor_cubic", "an output that saturates", "1/V^2", -5.0, 5.0, 0.1, side="cell"),
-    candidate("offset", "a voltage beside the input", "V", -0.01, 0.01, 1e-4, side="parameter",
-              form_share=0.02),
+    law("damper_quadratic", "damping with the square of speed", "1/V", -20.0, 20.0, 0.05),
+    law("friction", "friction of one size", "V/s^2", 0.0, 1e3, 20.0),
+    law("drive_cubic", "an input that saturates", "1/V^2", -50.0, 50.0, 0.5, side="drive"),
+    law("sensor_cubic", "an output that saturates", "1/V^2", -5.0, 5.0, 0.1, side="cell"),
+    law("offset", "a voltage beside the input", "V", -0.01, 0.01, 1e-4, side="parameter"),
 )  # fmt: skip
 
 

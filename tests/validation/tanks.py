@@ -16,8 +16,7 @@ from analysis.engine import Bundle, Nuisance, Point, Segment, Shape
 from analysis.engine.system import Array, Prediction
 from tests.validation.shared import Described, candidate, folder, series
 
-PERIOD_S = 4.0
-STEPS = 2  # a sample, over which the pump's voltage is held
+PERIOD_S, STEPS = 4.0, 2  # of a sample, over which the pump's voltage is held
 NOISE_V = 0.2
 """What tanks, hoses and a pump can be trusted to at any time: a tenth of the level's variation. The
 sensor's own noise, from second differences of the train record, is a tenth of it."""
