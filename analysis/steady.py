@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from analysis.diagnosis.recording import Recording
 from cdpr8.errors import DataError
 from model import Machine
-from model.kinematics import rotation, trigonometry
+from model.kinematics import Matrix, rotation, trigonometry
 
 Array = NDArray[np.float64]
 
@@ -159,7 +159,7 @@ def steady(recording: Recording) -> Steady:
             remedy="record a slower motion",
         )
     basis = harmonic_basis(t_s, hertz, count)
-    coefficients = np.linalg.lstsq(basis, value, rcond=None)[0]
+    coefficients = np.asarray(np.linalg.lstsq(basis, value, rcond=None)[0], dtype=np.float64)
     machine = Machine.from_rig(recording.rig)
     left = value - basis @ coefficients
     along = length_gradient(machine, coefficients[0])
@@ -194,9 +194,7 @@ def steady(recording: Recording) -> Steady:
 
 
 def _window(recording: Recording) -> tuple[float, float]:
-    stretches = [
-        one for one in recording.bundles[-1].segments if one.fundamental_hz is not None
-    ]
+    stretches = [one for one in recording.bundles[-1].segments if one.fundamental_hz is not None]
     if not stretches:
         raise DataError(
             "the run has no steady motion of two periods or more",
@@ -234,8 +232,12 @@ def noise_level(t_s: Array, residual: Array, hertz: float) -> float:
 def lengths(pose: Array, base: Array, anchor: Array) -> Array:
     """Length of one cable over poses, Eqs. 1 and 9, shape (n,), m."""
     turn = rotation(trigonometry((pose[:, 3], pose[:, 4], pose[:, 5])))
-    arm = np.stack([sum(turn[r][c] * anchor[c] for c in range(3)) for r in range(3)], axis=1)
-    return np.asarray(np.linalg.norm(base - pose[:, :3] - arm, axis=1))
+    return np.asarray(np.linalg.norm(base - pose[:, :3] - arms(turn, anchor), axis=1))
+
+
+def arms(turn: Matrix, anchor: Array) -> Array:
+    """One anchor in O-XYZ over rotations, shape (n, 3), m."""
+    return np.stack([sum(turn[r][c] * anchor[c] for c in range(3)) for r in range(3)], axis=1)
 
 
 def length_gradient(machine: Machine, pose: Array) -> Array:

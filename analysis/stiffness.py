@@ -30,7 +30,7 @@ from model import Machine
 Array = NDArray[np.float64]
 
 TELLING = 0.1
-"""A stiffness known to less than this share of itself is not written: the cable moves too little."""
+"""A stiffness known no better than to this share is not written: the cable hardly moves."""
 
 STRANGE = 4.0
 """Runs that differ by more than this, in sigmas, are told of."""
@@ -52,7 +52,8 @@ class CableStiffness:
     parts
         What `sigma` is made of, N/m: "noise" (cells and poses, as correlated as their residuals
         are), "geometry" (anchor and base points, the plate's zero, the camera's axes; the pose is
-        that of the rig file's centre of mass, wherever the true one is), "calibration" (of cell and camera), "timing" (the clocks).
+        that of the rig file's centre of mass, wherever the true one is), "calibration" (of cell and
+        camera), "timing" (the clocks).
     rig_value, rig_sigma
         Of the rig file.
     moved_m
@@ -133,10 +134,11 @@ def stiffnesses(recordings: Sequence[Recording]) -> Stiffnesses:
         value = np.array([one.value[i] for one in slopes])
         weight = noise**-2 / (noise**-2).sum()
         mean = float(weight @ value)
+        each = list(zip(weight, slopes, strict=True))
         systematic = {
-            name: float(np.linalg.norm(weight @ np.array([one.systematic[name][:, i] for one in slopes])))
+            name: float(np.linalg.norm(sum(w * one.systematic[name][:, i] for w, one in each)))
             for name in ("geometry", "timing")
-        }  # fmt: skip
+        }
         budget = {
             "noise": float(np.sqrt((weight**2 * noise**2).sum())),
             "geometry": systematic["geometry"],
@@ -230,7 +232,9 @@ def _warnings(recordings: Sequence[Recording], cables: Sequence[CableStiffness])
                 "period: stiffness is for a slower run"
             )
         if not one.run.start.motion_start_known:
-            found.append(f"{one.run.name} does not say when its motion started; none is needed here")
+            found.append(
+                f"{one.run.name} does not say when its motion started; none is needed here"
+            )
     still = [str(one.cable) for one in cables if not one.told]
     if still:
         found.append(
@@ -240,8 +244,8 @@ def _warnings(recordings: Sequence[Recording], cables: Sequence[CableStiffness])
     apart = [str(one.cable) for one in cables if one.told and one.spread > STRANGE]
     if apart:
         found.append(
-            f"cable {', '.join(apart)}: the runs differ by more than their noise; stiffness depends "
-            "on amplitude, rate or tension here, or something else follows the elongation"
+            f"cable {', '.join(apart)}: the runs differ by more than their noise; stiffness "
+            "depends on amplitude, rate or tension here, or something else follows the elongation"
         )
     missing = sorted(set(range(1, 9)) - {one.cable for one in cables})
     if missing:

@@ -91,7 +91,8 @@ class Biases:
                 c
                 for c in told
                 if c not in rubbing
-                and abs(self.cables[c - 1].quadrature_n) > SEEN * self.cables[c - 1].quadrature_sigma_n
+                and abs(self.cables[c - 1].quadrature_n)
+                > SEEN * self.cables[c - 1].quadrature_sigma_n
             ]
             if quadrature:
                 found.append(
@@ -102,9 +103,9 @@ class Biases:
         for c in constant:
             one = self.cables[c - 1]
             found.append(
-                f"cable {c}: over the runs' rates the quadrature is {one.constant_n:.2g} N whatever "
-                f"the rate (friction) and {one.viscous_n_s_per_m:.2g} N s/m in proportion to it "
-                "(damping or timing)"
+                f"cable {c}: over the runs' rates the quadrature is {one.constant_n:.2g} N "
+                f"whatever the rate (friction) and {one.viscous_n_s_per_m:.2g} N s/m in proportion "
+                "to it (damping or timing)"
             )
         return found
 
@@ -184,17 +185,19 @@ def _look(part: Steady, slope: Array) -> list[tuple[float, float, float, float]]
 
 
 def _common(
-    parts: Sequence[Steady], looked: Sequence[list[tuple[float, ...]]], slopes: Sequence[Array]
+    parts: Sequence[Steady],
+    looked: Sequence[Sequence[tuple[float, float, float, float]]],
+    slopes: Sequence[Array],
 ) -> tuple[tuple[float, bool], float]:
     """The lag of all cables in all runs, whether it is one, and its sigma."""
-    lags, sigmas = [], []
+    found, errors = [], []
     for part, looks, slope in zip(parts, looked, slopes, strict=True):
-        for i, (quadrature, sigma, _, _) in enumerate(looks):
-            stiff = slope[i] * part.moved_m[i] * part.circular
-            if np.isfinite(sigma) and stiff > 0.0:
-                lags.append(quadrature / stiff)
-                sigmas.append(sigma / stiff)
-    lag, sigma = np.array(lags), np.array(sigmas)
+        for i, (quadrature, error, _, _) in enumerate(looks):
+            stiff = float(slope[i] * part.moved_m[i] * part.circular)
+            if np.isfinite(error) and stiff > 0.0:
+                found.append(quadrature / stiff)
+                errors.append(error / stiff)
+    lag, sigma = np.array(found), np.array(errors)
     weight = sigma**-2
     mean = float(weight @ lag / weight.sum())
     # Even one lag is not quite one: samples are in time to some tenths of a millisecond.
@@ -203,7 +206,7 @@ def _common(
 
 
 def _by_rate(
-    parts: Sequence[Steady], looked: Sequence[list[tuple[float, ...]]], i: int
+    parts: Sequence[Steady], looked: Sequence[Sequence[tuple[float, float, float, float]]], i: int
 ) -> tuple[float | None, float | None]:
     """Quadrature of a cable as friction and as damping, where the runs' rates differ."""
     rates = np.array([part.moved_m[i] * part.circular for part in parts])
@@ -219,4 +222,3 @@ def _by_rate(
     if (np.abs(factors) < SEEN * spread).all():
         return None, None
     return float(factors[0]), float(factors[1])
-

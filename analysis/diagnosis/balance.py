@@ -4,9 +4,8 @@
 (b) The platform's balance of wrenches: M X'' + W_C + weight less cables and drive, Eq. 2.
 (c) Of (a), the part that moves nothing: eight cables pull in six directions, two are inner.
 
-Friction between frame and cell is in (a) of its cable alone; between cell and platform in (b), along
-that cable's column; what pulls at the platform otherwise is in (b) alone; creep and drift of
-pretension in (c) alone; a late camera in all (a) alike, as the rate of elongation.
+Friction between frame and cell is in (a) of its cable; between cell and platform in (b), along its
+column, as is what else pulls there; creep of pretensions in (c); a late camera in all (a) alike.
 """
 
 from collections.abc import Sequence
@@ -25,7 +24,7 @@ from analysis.diagnosis.nuisances import (
     inertia_shares,
 )
 from analysis.diagnosis.recording import Recording
-from analysis.steady import Steady, harmonic_basis, lengths, noise_level, steady
+from analysis.steady import Steady, arms, harmonic_basis, lengths, noise_level, steady
 from model import Machine
 from model.drive import required_drive
 from model.kinematics import rotation, trigonometry
@@ -35,15 +34,10 @@ from model.platform import required_wrench
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-PHASES = 128
-"""Points of a period."""
-
-TENSION_HARMONICS = 10
+PHASES, TENSION_HARMONICS = 128, 10
 
 SEEN = 4.0
 """A harmonic that stands out of its sigma by this is seen."""
-
-WRENCH = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
 
 
 @dataclass(frozen=True)
@@ -112,7 +106,7 @@ class Balance:
 
 @dataclass(frozen=True)
 class _Known:
-    """What the residuals are computed with, so that each number can be moved by its sigma."""
+    """What the residuals are computed with: each can be moved by its sigma."""
 
     machine: Machine
     gain: Array
@@ -141,8 +135,8 @@ def balance(recording: Recording) -> Balance:
     tension, noise = _tension_harmonics(part)
     known = _Known(machine, np.ones(8), 1.0, 0.0, np.zeros(8), 0.0, 0.0)
     start = recording.excitation.start_s + recording.shift_s
-    whole = np.ceil((part.middle_s - start) * part.hertz) / part.hertz + start
-    t_s = whole + np.arange(PHASES) / (PHASES * part.hertz)
+    first_s = np.ceil((part.middle_s - start) * part.hertz) / part.hertz + start
+    t_s = first_s + np.arange(PHASES) / (PHASES * part.hertz)
     count = (len(part.pose) - 1) // 2
     inner = _inner(machine)
 
@@ -150,15 +144,15 @@ def balance(recording: Recording) -> Balance:
         return _rows(recording, part, tension, one, inner, t_s)
 
     here = rows(known)
-    amplitude = _harmonics(here, count)
     noise_only = 0.5 * _noise(part, machine, noise, inner, count)
     covariance = noise_only[..., None, None] * np.eye(2)
     for one in _moved(recording, known):
         change = _both(_harmonics(rows(one) - here, count))
         covariance += change[..., :, None] * change[..., None, :]
-    series = here - here.mean(axis=1, keepdims=True)
+    series, amplitude = here - here.mean(axis=1, keepdims=True), _harmonics(here, count)
     parts = [slice(0, 8), slice(8, 14), slice(14, 16)]
-    names = [tuple(f"cable {i}" for i in range(1, 9)), WRENCH, ("inner 1", "inner 2")]
+    wrench = tuple(f"{kind} {axis}" for kind in ("force", "moment") for axis in "xyz")
+    names = [tuple(f"cable {i}" for i in range(1, 9)), wrench, ("inner 1", "inner 2")]
     units = [("N",) * 8, ("N",) * 3 + ("N m",) * 3, ("N", "N")]
     cables, platform, along = (
         Residual(n, u, series[p], amplitude[p], covariance[p])
@@ -186,10 +180,9 @@ def _tension_harmonics(part: Steady) -> tuple[Array, Array]:
 def _rows(
     recording: Recording, part: Steady, tension: Array, known: _Known, inner: Array, t_s: Array
 ) -> Array:
-    """(a), (b) and (c) over a period, shape (16, phases); cables without tension follow their law."""
+    """(a), (b), (c) over a period, shape (16, phases); cables without tension follow their law."""
     machine = known.machine
     pose, rate, acceleration = _motion(part, t_s + known.late_s)
-    # A camera's gain is about where the platform rests.
     pose, rate, acceleration = (known.camera_gain * one for one in (pose, rate, acceleration))
     pulled, law = np.empty((8, PHASES)), np.empty((8, PHASES))
     for i in range(8):
@@ -201,8 +194,7 @@ def _rows(
     beyond = pulled - law
     command = RampedSine.from_excitation(recording.excitation)
     nominal = Machine.from_rig(recording.rig)
-    at_s = t_s - recording.shift_s - known.drive_late_s
-    asked = command.at(at_s)
+    asked = command.at(t_s - recording.shift_s - known.drive_late_s)
     if recording.excitation.drive == "winch":
         asked = tuple(np.zeros_like(one) for one in asked)  # type: ignore[assignment]
     drive = (1.0 + known.drive_share) * required_drive(nominal, *asked)
@@ -216,16 +208,13 @@ def _wrench(
     """M X'' + W_C + weight less cables and drive, shape (6, phases)."""
     angles = trigonometry((pose[:, 3], pose[:, 4], pose[:, 5]))
     rates, linear, angular = rate[:, 3:], acceleration[:, :3], acceleration[:, 3:]
-    force, moment = required_wrench(
-        machine.mass, machine.inertia, angles, tuple(rates.T), tuple(linear.T), tuple(angular.T)
-    )
+    moving = (tuple(one.T) for one in (rates, linear, angular))
+    force, moment = required_wrench(machine.mass, machine.inertia, angles, *moving)
     wanted = np.stack(np.broadcast_arrays(*force, *moment))
     wanted[2] += machine.mass * machine.gravity
     turn = rotation(angles)
     for i in range(8):
-        arm = np.stack(
-            [sum(turn[r][c] * machine.anchor[i, c] for c in range(3)) for r in range(3)], axis=1
-        )
+        arm = arms(turn, machine.anchor[i])
         line = machine.base[i] - pose[:, :3] - arm
         pull = line / np.linalg.norm(line, axis=1, keepdims=True) * pulled[i][:, None]
         wanted[:3] -= pull.T
@@ -256,31 +245,33 @@ def _harmonics(rows: Array, count: int) -> Complex:
     return np.asarray(2.0 / rows.shape[1] * np.fft.rfft(rows, axis=1)[:, 1 : count + 1])
 
 
+def _structure(machine: Machine) -> Array:
+    """Wrench of unit tensions at rest, shape (6, 8)."""
+    direction = (machine.base - machine.anchor) / machine.rest_length[:, None]
+    return np.asarray(np.hstack([direction, np.cross(machine.anchor, direction)]).T)
+
+
 def _inner(machine: Machine) -> Array:
     """Two orthonormal sets of tensions that make no wrench at rest, shape (8, 2)."""
-    direction = (machine.base - machine.anchor) / machine.rest_length[:, None]
-    structure = np.hstack([direction, np.cross(machine.anchor, direction)]).T
-    return np.asarray(np.linalg.svd(structure)[2][6:].T)
+    return np.asarray(np.linalg.svd(_structure(machine))[2][6:].T)
 
 
 def _noise(part: Steady, machine: Machine, noise: Array, inner: Array, count: int) -> Array:
     """Variance of the amplitudes for noise of cells and poses alone, shape (16, harmonics)."""
-    direction = (machine.base - machine.anchor) / machine.rest_length[:, None]
-    structure = np.hstack([direction, np.cross(machine.anchor, direction)]).T
     cells = np.where(np.isfinite(noise[:, :count]), noise[:, :count], 0.0) ** 2
     poses = 2.0 * (machine.stiffness * part.pose_noise_m) ** 2
     beyond = cells + poses[:, None]
     inertia = np.concatenate([np.full(3, machine.mass), np.diag(machine.inertia)])
     faster = (part.circular * np.arange(1, count + 1)) ** 2
     pushed = 2.0 * (inertia * part.axis_noise)[:, None] ** 2 * faster**2
-    return np.vstack([beyond, structure**2 @ cells + pushed, (inner**2).T @ beyond])
+    return np.vstack([beyond, _structure(machine) ** 2 @ cells + pushed, (inner**2).T @ beyond])
 
 
 def _moved(recording: Recording, known: _Known) -> Sequence[_Known]:
     """Each number of the rig file, and each clock and gain, moved by its sigma."""
     rig, machine = recording.rig, known.machine
     unit = np.eye(8)
-    found = []
+    found: list[_Known] = []
 
     def change(**changes: object) -> None:
         found.append(replace(known, machine=replace(machine, **changes)))  # type: ignore[arg-type]
@@ -299,8 +290,10 @@ def _moved(recording: Recording, known: _Known) -> Sequence[_Known]:
             change(base=machine.base + cable.base_m.sigma * moved)
         found.append(replace(known, gain=known.gain + CELL_SHARE * unit[i]))
         found.append(replace(known, early_s=SAMPLE_S * unit[i]))
-    found.append(replace(known, camera_gain=1.0 + CAMERA_SHARE))
-    found.append(replace(known, late_s=LATENCY_S))
-    found.append(replace(known, drive_share=DRIVE_SHARE))
-    found.append(replace(known, drive_late_s=START_S))
-    return found
+    return [
+        *found,
+        replace(known, camera_gain=1.0 + CAMERA_SHARE),
+        replace(known, late_s=LATENCY_S),
+        replace(known, drive_share=DRIVE_SHARE),
+        replace(known, drive_late_s=START_S),
+    ]

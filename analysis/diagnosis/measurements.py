@@ -50,7 +50,7 @@ TAPE = Measurement("measure base and anchor points again, to a millimetre", 40.0
 
 BREAKAWAY = Measurement(
     "pull each cable over its pulley by hand with a spring scale, slowly, from rest and both ways, "
-    "at two loads: the force at breakaway and in sliding is the friction and its dependence on load",
+    "at two loads: the force at breakaway and in sliding is the friction and its load dependence",
     20.0,
 )
 
@@ -61,7 +61,8 @@ LOG = Measurement(
 )
 
 FRAMES = Measurement(
-    "film a flashing light of known rate for a minute: exposure, readout and dropped frames show", 5.0
+    "film a flashing light of known rate for a minute: exposure, readout and dropped frames show",
+    5.0,
 )
 
 DECAY = Measurement(
@@ -105,7 +106,10 @@ def measurement(one: str, other: str) -> Measurement:
         (bool(names & {"geometry", "pulley_geometry"}), TAPE),
         (bool(names & {"camera_exposure", "camera_rolling_shutter", "frames_dropped"}), FRAMES),
         (bool(names & set(FRICTIONS)), BREAKAWAY),
-        (bool(names & {"cable_viscous", "cable_structural", "platform_damping", "air_drag"}), DECAY),
+        (
+            bool(names & {"cable_viscous", "cable_structural", "platform_damping", "air_drag"}),
+            DECAY,
+        ),
         (bool(names & {"pretension", "cable_slack", "cable_sag"}), WEIGHTS),
     ]
     return next((found for fits, found in rules if fits), AGAIN)

@@ -1,8 +1,9 @@
-"""Experiments that can be recorded next: motions, pretensions, and the rig files that ask for them."""
+"""Experiments that can be recorded next: motions, pretensions, and rig files that ask for them."""
 
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -41,7 +42,7 @@ SLOWLY = ("cable_creep", "cable_relaxation", "cell_drift", "cell_zero", "pretens
 DECAY_S = 3.0
 
 ASK_MIN, TIGHTEN_MIN = 0.5, 10.0
-"""Minutes of rig time to ask for another motion, and to tighten eight cables and let them settle."""
+"""Minutes of rig time to ask for another motion, and to tighten eight cables and let them rest."""
 
 ALIKE = 0.15
 """A motion whose numbers are all within this share of those of a run there is, is that run."""
@@ -89,9 +90,7 @@ class Experiment:
     def recording(self, like: Recording) -> Recording:
         """The recording it would make, values left at zero; rates and noise are those of a run."""
         asked = self.simulated
-        start = like.run.start.model_copy(
-            update={"excitation": asked, "motion_start_known": True}
-        )
+        start = like.run.start.model_copy(update={"excitation": asked, "motion_start_known": True})
         run = replace(like.run, folder=Path("next"), rig=self.rig, start=start)
         tones = tuple(tones_hz(Machine.from_rig(self.rig)))
         quieter = [replace(one, covariance=one.covariance / self.repeats) for one in like.bundles]
@@ -118,13 +117,13 @@ def experiments(
     base = own.model_copy(update={"rest_s": 1.2, "motion_start_s": None, "ramp_s": 0.5})
     found = []
     lowest = SLACKER * float(simulate(rig, own, output_rate_hz=500.0).tension_n.min())
-    for what, there, excitation, minutes in _wanted(rig, base, effects):
+    for what, there, excitation, preparing in _wanted(rig, base, effects):
         taut = _taut(there, excitation, lowest * (1.0 if there is rig else 0.5))
         if taut is None or any(_same(taut, there, one) for one in recordings):
             continue
         long = taut.motion_s == LONG_S and taut.amplitude_deg > 0.0
         repeats = LONG_S / _motion_s(taut) if long else 1.0
-        minutes += ASK_MIN + taut.duration_s / 60.0
+        minutes = preparing + ASK_MIN + taut.duration_s / 60.0
         found.append(Experiment(what(taut), taut, there, minutes, repeats))
     return tuple(found)
 
@@ -175,8 +174,11 @@ def _wanted(
     for factor in PRETENSIONS:
         there = with_pretension(rig, factor)
         if there is not None:
-            yield (lambda e, f=factor: f"the same motion with pretensions of {f:g} times the inner "  # type: ignore[misc]
-                   "tension", there, motion(), TIGHTEN_MIN)  # fmt: skip
+            yield (partial(_tightened, factor), there, motion(), TIGHTEN_MIN)
+
+
+def _tightened(factor: float, _: Excitation) -> str:
+    return f"the same motion with pretensions of {factor:g} times the inner tension"
 
 
 def _angle(excitation: Excitation) -> str:

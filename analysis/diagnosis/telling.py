@@ -143,7 +143,9 @@ class Telling:
         seen = known @ self._rotation
         root = _posterior_root(fitted)
         unseen = known - seen @ self._rotation.T
-        return np.hstack([np.hstack([seen, own]) @ root, unseen, *(one[:, None] for one in unknown)])
+        return np.hstack(
+            [np.hstack([seen, own]) @ root, unseen, *(one[:, None] for one in unknown)]
+        )
 
     def _own_columns(self, fitted: Fitted) -> Array:
         """What a rival's own numbers do, in the order of its names, shape (f, k)."""
@@ -193,7 +195,7 @@ def _order(state: State) -> list[int]:
 
 
 def _posterior_root(fitted: Fitted) -> Array:
-    """A root of the covariance of the seen directions and the rival's own numbers, after the runs so far."""
+    """A root of the covariance of directions and the rival's numbers, after the runs so far."""
     problem, state = fitted.problem, fitted.state
     names = state.hypothesis.names
     own = [fitted.columns[name] for name in names]

@@ -22,6 +22,9 @@ from analysis.engine.system import Array, Point, System
 ROUNDS = 3
 """Steps, at most."""
 
+EXPLAINED = 4.0
+"""Parameters that leave more than this, a feature, are left where they were."""
+
 LEAST_TYPICAL = 12
 """Features that a typical misfit needs."""
 
@@ -87,6 +90,7 @@ def calibrate(
     at = np.zeros(len(system.nuisances))
     features = simulate_features(system, lens, [Point(at)])[0]
     columns = nuisance_columns(system, lens, at, progress)
+    nominal = at, features, columns
     for round_ in range(ROUNDS):
         base = base_variance(lens, features, data)
         residual = data - features
@@ -121,6 +125,10 @@ def calibrate(
         if missed > LINEAR**2 * moved and round_ == 0:
             columns = nuisance_columns(system, lens, at, progress)
     base = base_variance(lens, features, data)
+    if _misfit(data - features, at, base, used) > EXPLAINED * int(used.sum()):
+        # Parameters that do not explain it were dragged along by what does.
+        at, features, columns = nominal
+        base = base_variance(lens, features, data)
     base = base * unsettled(lens, data - features, base)
     rotation = directions(columns, base, used)
     problem = Problem(

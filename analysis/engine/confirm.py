@@ -21,8 +21,8 @@ class Confirmation:
     Attributes
     ----------
     before, after
-        Nothing left out and the chosen hypothesis, both fitted to the used part: part of the data
-        ("used", "held_out") -> kind of channel -> rms of the residual over the noise.
+        Nothing left out, parameters fitted within their priors; and the chosen hypothesis, fitted
+        to the used part: part of the data ("used", "held_out") -> kind of channel -> rms of the residual over the noise.
     held_record
         The recording that was kept back whole; "" where there are too few.
     """
@@ -33,7 +33,10 @@ class Confirmation:
 
 
 def confirm(search: Search, chosen: Fitted) -> Confirmation:
-    """Fit the null and the chosen hypothesis to the used part, and judge both on the other.
+    """Fit the chosen hypothesis to the used part, and judge it on the other.
+
+    Before is the system at its likeliest parameters, which have seen all of the data: that favours
+    it.
 
     Parameters
     ----------
@@ -47,11 +50,12 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
     held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
     used = _used(search, held)
-    errors = []
-    for fitted in (search.null, chosen):
-        again = search.refiner.settle(search.refiner.again(fitted, used))
-        errors.append(sample_errors(search.system, again.point, held))
-    return Confirmation(before=errors[0], after=errors[1], held_record=held)
+    again = search.refiner.settle(search.refiner.again(chosen, used))
+    return Confirmation(
+        before=sample_errors(search.system, Point(search.calibrated.at), held),
+        after=sample_errors(search.system, again.point, held),
+        held_record=held,
+    )
 
 
 def _used(search: Search, held: str) -> NDArray[np.bool_]:

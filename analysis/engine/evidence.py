@@ -286,7 +286,7 @@ def weigh(
     for size in sizes if names else (1.0,):
         estimate = np.zeros(stacked.shape[1])
         for turn in range(rounds if names else 1):
-            variance = problem.base.copy()
+            spread = np.zeros(size_all)
             for i, name in enumerate(names):
                 does = done[name]
                 if not standing:
@@ -296,7 +296,9 @@ def weigh(
                         if turn
                         else problem.residual
                     )
-                variance += form_variance(problem.labels, does, shares[name], size)
+                # Errors of form add up: what one law does is not surer for being shared by two.
+                spread += np.sqrt(form_variance(problem.labels, does, shares[name], size))
+            variance = problem.base + spread**2
             frame = Frame(problem, variance)
             matrix, right = frame.normal(stacked)
             chi2 = frame.chi2

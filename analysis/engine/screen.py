@@ -177,13 +177,12 @@ class Screen:
         share = candidate.form_share * LOOSE_FORM
         if share not in self._frames:
             # Whatever explains the residual is uncertain by a share of it.
-            variance = self.problem.base + form_variance(
-                self.problem.labels, self.problem.residual, share, 1.0
-            )
+            labels = self.problem.labels
+            spread = np.sqrt(form_variance(labels, self.problem.residual, share, 1.0))
             for name, done in self._done.items():
                 own_share = self.candidates[name].form_share * LOOSE_FORM
-                variance += form_variance(self.problem.labels, done, own_share, 1.0)
-            self._frames[share] = Frame(self.problem, variance)
+                spread += np.sqrt(form_variance(labels, done, own_share, 1.0))
+            self._frames[share] = Frame(self.problem, self.problem.base + spread**2)
         own = (
             np.hstack(list(self._own.values()))
             if self._own

@@ -236,6 +236,11 @@ class _Finder:
                 ]
         return starts
 
+    def _kin(self, scored: Scored) -> set[str]:
+        """Families of its candidates."""
+        names = scored.hypothesis.names
+        return {self._candidates[name].family for name in names} - {""}
+
     def fit_best(self, screened: Iterable[Scored], most: int, stage: str) -> None:
         """Fit the best in earnest, each set of candidates once for each choice of terms."""
         ordered = sorted(screened, key=lambda one: -one.log_score)
@@ -244,9 +249,12 @@ class _Finder:
         anew = self._refiner.anew
         most = MORE_ANEW * most if anew else most
         for one in ordered:
-            if not anew and one.log_score < ordered[0].log_score - _reach(one) and len(chosen) >= 3:
-                break
-            if one.hypothesis.names in sets or len(chosen) >= most:
+            far = one.log_score < ordered[0].log_score - _reach(one) and len(chosen) >= 3
+            if one.hypothesis.names in sets:
+                continue
+            # Laws of one thing are all fitted, or none: to first order they are hard to rank.
+            kin = self._kin(one) & {family for done in chosen for family in self._kin(done)}
+            if not kin and ((far and not anew) or len(chosen) >= most):
                 continue
             sets.add(one.hypothesis.names)
             chosen.append(one)
