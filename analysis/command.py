@@ -1,5 +1,10 @@
 """The command line of `analysis`: one module for each command or family of commands."""
 
+import os
+
+# Small matrices are slower on many threads; it counts before NumPy is first imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import typer
 
 from analysis.challenge.command import app as challenge

@@ -90,10 +90,9 @@ def _camera(simulation: Simulation) -> Look:
         step = (time_s[row + 1] - time_s[row])[:, None]
         part = (at_s - time_s[row])[:, None] / step
         left = 1.0 - part
-        seen: Array = (
-            left**2 * ((1.0 + 2.0 * part) * pose[row] + part * step * rate[row])
-            + part**2 * ((1.0 + 2.0 * left) * pose[row + 1] - left * step * rate[row + 1])
-        )
+        seen: Array = left**2 * (
+            (1.0 + 2.0 * part) * pose[row] + part * step * rate[row]
+        ) + part**2 * ((1.0 + 2.0 * left) * pose[row + 1] - left * step * rate[row + 1])
         return seen
 
     return look

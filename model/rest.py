@@ -1,4 +1,4 @@
-"""Where a machine comes to rest: what it starts from where it is not the one the drive was made for.
+"""Where a machine comes to rest, which is not X* = 0 where the drive was made for another.
 
 A platform whose mass, pretension or geometry is not quite that of the drive's machine hangs beside
 X* = 0; started there, with no damping of its own, it would ring for the whole of the run.

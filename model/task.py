@@ -221,7 +221,7 @@ class Task:
     def _differs(self) -> bool:
         """Whether the plant may hang elsewhere than the machine that the drive was made for."""
         return bool(self.acting) or any(
-            not np.array_equal(one, other)
+            not np.array_equal(np.asarray(one), np.asarray(other))
             for one, other in zip(self.machine.plant(), self.nominal_machine.plant(), strict=True)
         )
 

@@ -54,9 +54,7 @@ POLICIES: dict[str, Policy] = {
     "pulley_stribeck": Policy(shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,)}),
     "pulley_inertia": Policy(form_share=LINEAR),
     "pulley_geometry": Policy(form_share=LINEAR),
-    "centre_of_mass": Policy(
-        steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}
-    ),
+    "centre_of_mass": Policy(steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}),
     "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),
     "camera_axis": Policy(steps={"axis_roll_deg": 0.5, "axis_pitch_deg": 0.5, "axis_yaw_deg": 0.5}),
     "camera_latency": Policy(steps={"latency_s": 0.003}),

@@ -29,7 +29,7 @@ LANES_FROM = 6
 
 GROUP = 16
 
-GUARD = 0.03
+GUARD = 0.1
 """Share of critical damping that keeps the platform from ringing, where that is asked for."""
 
 FAR = 1e6
@@ -112,9 +112,7 @@ class RecordedMachine:
         """See `System`."""
         return self._candidates
 
-    def simulate(
-        self, points: Sequence[Point], reduce: Callable[[Prediction], Any]
-    ) -> list[Any]:
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`.
 
         A platform without damping of its own rings on for the whole of a run, in a phase that no
@@ -128,9 +126,7 @@ class RecordedMachine:
                 found.append(prediction)
             else:
                 exact, calm = self._nominal
-                found.append(
-                    [e + p - c for e, p, c in zip(exact, prediction, calm, strict=True)]
-                )
+                found.append([e + p - c for e, p, c in zip(exact, prediction, calm, strict=True)])
         return [reduce(prediction) for prediction in found]
 
     @cached_property
@@ -147,10 +143,10 @@ class RecordedMachine:
             tasks = {job.key: job.task for job in jobs}
             done = self._solve(tasks)
             seen: dict[tuple[object, ...], Prediction] = {}
-            for job, prediction in zip(jobs, predictions, strict=True):
+            for job, whole in zip(jobs, predictions, strict=True):
                 if job.whole_key not in seen:
                     seen[job.whole_key] = seen_by(recording, done[job.key], job)
-                prediction += seen[job.whole_key]
+                whole.extend(seen[job.whole_key])
         return predictions
 
     def job(self, point: Point, record: int) -> _Job:
@@ -165,7 +161,10 @@ class RecordedMachine:
         inside = tuple(one for one in active if one.effect.acts.side not in _OUTSIDE)
         outside = tuple(one for one in active if one.effect.acts.side in _OUTSIDE)
         task = Task(
-            rig=recording.rig, excitation=recording.excitation, effects=inside, nominal=recording.rig
+            rig=recording.rig,
+            excitation=recording.excitation,
+            effects=inside,
+            nominal=recording.rig,
         )
         key = tuple((one.name, *sorted(one.values.items())) for one in inside)
         return _Job(key, task, outside, start_s, pose_zero, late_s)
@@ -253,9 +252,7 @@ def seen_by(recording: Recording, simulation: Simulation, job: _Job) -> Predicti
     times = np.full((longest, 8), simulation.t_s[0])
     for cable, one in zip(recording.cables, tensions, strict=True):
         times[: len(one.t_s), cable - 1] = one.t_s - job.start_s - job.late_s[cable - 1]
-    stamps = (
-        recording.bundles[-1].t_s - job.start_s if recording.has_pose else simulation.t_s[:1]
-    )
+    stamps = recording.bundles[-1].t_s - job.start_s if recording.has_pose else simulation.t_s[:1]
     seen = observe(simulation, job.seen, tension_t_s=times, pose_t_s=stamps)
     found = [
         _finite(seen.tension_n[: len(one.t_s), cable - 1 : cable])

@@ -50,8 +50,8 @@ class Meaning:
     Parameters
     ----------
     effect, parameter
-        A number of the library's effect; "start" for the start of the motion, "pose_zero" for the plate's place, "sampling" for the
-        instants at which a cell is read.
+        A number of the library's effect; "start" for the start of the motion, "pose_zero" for the
+        plate's place, "sampling" for the instants at which a cell is read.
     cable
         1 to 8, or 0.
     record
@@ -107,10 +107,10 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
         add("clock_drift", "drift_ppm", CLOCK_PPM, "ppm")
         for axis in ("roll", "pitch", "yaw"):
             add("camera_axis", f"axis_{axis}_deg", CAMERA_AXIS_DEG, "deg")
-        for axis in range(6):
-            sigma = POSE_ZERO_M if axis < 3 else POSE_ZERO_RAD
-            unit = "m" if axis < 3 else "rad"
-            found.append((Nuisance(f"pose zero {axis}", sigma, unit), Meaning("pose_zero", axis=axis)))
+        for i in range(6):
+            sigma = POSE_ZERO_M if i < 3 else POSE_ZERO_RAD
+            unit = "m" if i < 3 else "rad"
+            found.append((Nuisance(f"pose zero {i}", sigma, unit), Meaning("pose_zero", axis=i)))
     for r, one in enumerate(recordings):
         known = one.run.start.motion_start_known
         sigma = START_S if known else UNKNOWN_START_S

@@ -114,7 +114,9 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
     lost = [str(c) for c in range(1, len(run.rig.cable) + 1) if c not in cables]
     if lost:
         notes.append(f"no usable tension of cable {', '.join(lost)}")
-    return Recording(run, excitation, shift_s, cables, tuple(bundles), seen is not None, tuple(notes))
+    return Recording(
+        run, excitation, shift_s, cables, tuple(bundles), seen is not None, tuple(notes)
+    )
 
 
 def segments(
@@ -266,7 +268,10 @@ def _stated(seen: "pd.DataFrame") -> Array:
     axes = ("x", "y", "z", "roll", "pitch", "yaw")
     units = ("m", "m", "m", "deg", "deg", "deg")
     sigma = np.array(
-        [np.median(seen[f"sigma_{a}_{u}"].to_numpy(dtype=float)) for a, u in zip(axes, units, strict=True)]
+        [
+            np.median(seen[f"sigma_{a}_{u}"].to_numpy(dtype=float))
+            for a, u in zip(axes, units, strict=True)
+        ]
     )
     correlation = np.eye(6)
     for i, a in enumerate(axes):

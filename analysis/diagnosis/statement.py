@@ -57,7 +57,7 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def cables_of(cause: Cause) -> list[int]:
-    """Cables where it acts: those whose magnitude stands out of its uncertainty; none: no choice."""
+    """Cables where it acts, by what stands out of its uncertainty; none: it has no choice."""
     places = {term: re.fullmatch(r".*@(\d+)", term) for term in cause.values}
     largest = max((abs(v) for v in cause.values.values()), default=0.0)
     found = set()
@@ -172,7 +172,7 @@ def moved_parameters(machine: RecordedMachine, diagnosis: Diagnosis) -> list[dic
     else:
         chosen = diagnosis.judgement.chosen
         at = diagnosis.calibrated.rotation @ chosen.weighed.nuisance
-    found = []
+    found: list[dict[str, Any]] = []
     for nuisance, sigmas in zip(machine.nuisances, at, strict=True):
         if abs(sigmas) > 0.5:
             found.append(

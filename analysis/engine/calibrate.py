@@ -7,6 +7,7 @@ left counts as the unknown's, and shrinks as the residual does.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.engine.evidence import (
     Frame,
@@ -177,5 +178,5 @@ def unsettled(lens: Lens, residual: Array, base: Array) -> Array:
     return factor
 
 
-def _misfit(residual: Array, at: Array, variance: Array, used: Array) -> float:
+def _misfit(residual: Array, at: Array, variance: Array, used: NDArray[np.bool_]) -> float:
     return float((residual[used] ** 2 / variance[used]).sum() + at @ at)

@@ -1,6 +1,6 @@
 """The proof: fitted to one part of the data, judged on the part that was kept back."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,8 @@ class Confirmation:
     ----------
     before, after
         Nothing left out, parameters fitted within their priors; and the chosen hypothesis, fitted
-        to the used part: part of the data ("used", "held_out") -> kind of channel -> rms of the residual over the noise.
+        to the used part: part of the data ("used", "held_out") -> kind of channel -> rms of the
+        residual over the noise.
     held_record
         The recording that was kept back whole; "" where there are too few.
     """
@@ -101,7 +102,7 @@ def sample_errors(system: System, point: Point, held: str = "") -> dict[str, dic
     }
 
 
-def whitened(bundles: "tuple[Bundle, ...] | list[Bundle]", prediction: list[Array]) -> list[Array]:
+def whitened(bundles: Sequence[Bundle], prediction: list[Array]) -> list[Array]:
     """Residuals of samples in units of their noise, for each bundle, shape (n, m)."""
     found = []
     for bundle, seen in zip(bundles, prediction, strict=True):

@@ -315,7 +315,7 @@ def weigh(
     best = int(np.argmax(np.array(logs) + np.log(weights)))
     log_evidence = float(np.logaddexp.reduce(np.array(logs) + np.log(weights)))
     estimate, matrix, frame, chi2, variance = kept[best]
-    covariance = np.linalg.pinv(matrix) if matrix.size else matrix
+    covariance: Array = np.asarray(np.linalg.pinv(matrix), dtype=float) if matrix.size else matrix
     variances = np.maximum(np.diag(covariance), 1e-300) if matrix.size else np.zeros(0)
     return Weighed(
         log_evidence=log_evidence,

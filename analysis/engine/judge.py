@@ -6,11 +6,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.hypothesis import LOG_ODDS
 from analysis.engine.refine import Fitted
 from analysis.engine.system import Array, Candidate
 
 TEMPER = 2.0
 """Scores count for less than they say, by this factor: laws are never quite the library's."""
+
+KIN_TEMPER = 4.0
+"""And among laws of one family by this factor more."""
+
+TEMPER_SHARE = 1.5e-3
+"""Or by this share of what there is to explain: the more there is, the more a law's form counts."""
+
+SIMPLER = 0.7
+"""Of laws of one family, each number of shape takes this off the logarithm of odds."""
 
 COVERED = 0.97
 """A set of indistinguishable causes holds this much of the probability."""
@@ -113,7 +123,16 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
     scores = np.array(
         [-np.inf if negligible(one, candidates) else _plausible_score(one) for one in fitted]
     )
-    weights = np.exp((scores - scores.max()) / TEMPER)
+    nothing = max(
+        (score for score, one in zip(scores, fitted, strict=True) if not one.hypothesis.parts),
+        default=scores.max(),
+    )
+    temper = max(TEMPER, TEMPER_SHARE * float(scores.max() - nothing))
+    scores = _among_kin(scores, fitted, candidates, temper)
+    # However little scores count, one cause more is no likelier beforehand.
+    causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
+    logs = (scores - scores.max()) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
+    weights = np.exp(logs - logs.max())
     weights /= weights.sum()
     total: dict[str, float] = defaultdict(float)
     for one, weight in zip(fitted, weights, strict=True):
@@ -126,17 +145,42 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
     if absent > 0.5 or not chosen.hypothesis.parts:
         null = next(one for one in fitted if not one.hypothesis.parts)
         return Judgement("none", (), null, tuple(float(w) for w in weights))
-    causes = tuple(
-        sorted(
-            (_cause(name, chosen, fitted, weights) for name in chosen.hypothesis.names),
-            key=lambda one: -one.present,
-        )
-    )
-    # What is likelier absent than present is not reported.
+    causes: tuple[Cause, ...] = ()
+    for _ in range(len(chosen.hypothesis.parts)):
+        every = (_cause(name, chosen, fitted, weights) for name in chosen.hypothesis.names)
+        causes = tuple(sorted(every, key=lambda one: -one.present))
+        kept = {causes[0].name, *(one.name for one in causes[1:] if one.present > SECOND)}
+        fewer = [one for one in fitted if set(one.hypothesis.names) == kept]
+        if len(kept) == len(causes) or not fewer:
+            break
+        # What is not sure enough is left out, and the others are as they are without it.
+        chosen = max(fewer, key=lambda one: one.log_score)
     causes = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
-    return Judgement(
-        _verdict(causes, candidates), causes, chosen, tuple(float(w) for w in weights)
-    )
+    return Judgement(_verdict(causes, candidates), causes, chosen, tuple(float(w) for w in weights))
+
+
+def _among_kin(
+    scores: Array,
+    fitted: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
+    temper: float,
+) -> Array:
+    """Scores in which laws of one family differ by less: none of them is the true one."""
+    groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
+    for i, one in enumerate(fitted):
+        names = (candidates[name].family or name for name in one.hypothesis.names)
+        groups[tuple(sorted(names))].append(i)
+    found = scores.copy()
+    for places in groups.values():
+        best = scores[places].max()
+        if np.isfinite(best) and len(places) > 1:
+            shapes = [
+                sum(len(candidates[name].shapes) for name in fitted[i].hypothesis.names)
+                for i in places
+            ]
+            more = np.array(shapes) - min(shapes)
+            found[places] = best - (best - scores[places]) / KIN_TEMPER - temper * SIMPLER * more
+    return found
 
 
 def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> bool:

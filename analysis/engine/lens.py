@@ -162,10 +162,23 @@ class Lens:
                             groups[own] = group
                             group += 1
                         rows.append(
-                            (b, c, s, line, _rings(line * hertz, segment, bundle),
-                             max(line / unit, 1.0), quadrature, order, segment.held_out,
-                             groups[own], stretch, inside.size,
-                             segment.fundamental_hz is None, every, segment.sealed)
+                            (
+                                b,
+                                c,
+                                s,
+                                line,
+                                _rings(line * hertz, segment, bundle),
+                                max(line / unit, 1.0),
+                                quadrature,
+                                order,
+                                segment.held_out,
+                                groups[own],
+                                stretch,
+                                inside.size,
+                                segment.fundamental_hz is None,
+                                every,
+                                segment.sealed,
+                            )
                         )
         columns = list(zip(*rows, strict=True)) if rows else [()] * 15
         self.labels = Labels(
@@ -227,7 +240,9 @@ def _rings(line_hz: float, segment: Segment, bundle: Bundle) -> bool:
     wide_hz = 0.0
     if segment.fundamental_hz is None:
         wide_hz = WIDTH / (segment.end_s - segment.start_s)
-    if line_hz > 0.0 and any(abs(tone - drive_hz) < RESONANT * drive_hz for tone in bundle.tones_hz):
+    if line_hz > 0.0 and any(
+        abs(tone - drive_hz) < RESONANT * drive_hz for tone in bundle.tones_hz
+    ):
         return True
     above = [tone for tone in bundle.tones_hz if tone > FAR_ABOVE * drive_hz]
     if above and line_hz >= min(above) - max(NEAR * min(above), wide_hz):

@@ -99,13 +99,20 @@ def locate(bundles: Sequence[Bundle], problem: Problem, residual: Array) -> tupl
     for group in order[:MOST]:
         if chance[group] > SIGNIFICANT or not count[group]:
             break
-        found.append(_finding(bundles, labels, residual, int(group), float(chance[group]), power))
+        found.append(
+            _finding(
+                bundles,
+                labels,
+                residual,
+                int(group),
+                float(chance[group]),
+                np.asarray(power, dtype=float),
+            )
+        )
     return (*found, *_blocks(bundles, problem, residual))
 
 
-def _blocks(
-    bundles: Sequence[Bundle], problem: Problem, residual: Array
-) -> tuple[Finding, ...]:
+def _blocks(bundles: Sequence[Bundle], problem: Problem, residual: Array) -> tuple[Finding, ...]:
     """Blocks of time in which they differ, the strongest first, of stretches seen line by line."""
     labels = problem.labels
     looks = int(np.ceil(labels.every.sum() / BLOCK))

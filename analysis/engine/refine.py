@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.calibrate import Calibrated
-from analysis.engine.evidence import Problem, Weighed, weigh
+from analysis.engine.evidence import Frame, Problem, Weighed, weigh
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored
@@ -224,8 +224,9 @@ class Refiner:
             there = state.moved(best.weighed.estimate, share)
             nuisance_there = nuisance + share * (best.weighed.nuisance - nuisance)
             tried = self._at(there, nuisance_there, used)
-            rise = tried.log_score - best.log_score
-            if rise > 0.0:
+            # At one variance: the evidence itself would favour whatever claims to do less.
+            rise = 0.5 * (_misfit_by(best, best) - _misfit_by(tried, best))
+            if rise > 0.0 and np.isfinite(tried.log_score):
                 best, state, nuisance, share = tried, there, nuisance_there, 1.0
                 if rise < SETTLED:
                     break
@@ -259,9 +260,7 @@ class Refiner:
         order = [k for name in names for k in state.places(name)]
         lows, highs = state.bounds()
         residuals, rows = state.shape_rows()
-        problem = replace(
-            self._problem, residual=self.data - features, at=nuisance, used=used
-        )
+        problem = replace(self._problem, residual=self.data - features, at=nuisance, used=used)
         if self.anew:
             anew = nuisance_columns(self.system, self.lens, there, effects=points[0].effects)
             problem = replace(problem, nuisance=anew)
@@ -319,3 +318,9 @@ def _misfit(fitted: Fitted, variance: Array, used: NDArray[np.bool_]) -> float:
         return float("inf")
     residual, at = fitted.problem.residual[used], fitted.problem.at
     return float((residual**2 / variance[used]).sum() + at @ at)
+
+
+def _misfit_by(fitted: Fitted, by: Fitted) -> float:
+    """Squared misfit of a fit by the variance of another, parameters free within their priors."""
+    shapes, _ = fitted.state.shape_rows()
+    return Frame(fitted.problem, by.weighed.variance).chi2 + float(shapes @ shapes)

@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, bounded, form_variance, weigh
+from analysis.engine.evidence import (
+    FORM_SIZES,
+    Frame,
+    Problem,
+    Weighed,
+    bounded,
+    form_variance,
+    weigh,
+)
 from analysis.engine.hypothesis import LOG_COST, Hypothesis, Part, part_log_prior
 from analysis.engine.system import Array, Candidate
 
@@ -117,6 +125,11 @@ class Screen:
             return None
         return self._score(best.hypothesis, {name: variant}, (name,))
 
+    def with_terms(self, name: str, terms: tuple[str, ...]) -> Scored:
+        """One more candidate with given terms, each its own value, at its first variant."""
+        part = Part(terms, False, self.candidates[name].variants()[0])
+        return self._score(self.on.plus(name, part), {name: 0}, (name,))
+
     def _choices(
         self, candidate: Candidate, columns: Array
     ) -> Iterator[tuple[tuple[str, ...], bool, float]]:
@@ -225,8 +238,15 @@ class Screen:
             prior = (prior[0], np.hstack([prior[1], wider]))
         shares = {name: self.candidates[name].form_share * LOOSE_FORM for name in columns}
         weighed = weigh(
-            self.problem, columns, done, shares, np.array(lows), np.array(highs), prior,
-            rounds=2, sizes=sizes,
+            self.problem,
+            columns,
+            done,
+            shares,
+            np.array(lows),
+            np.array(highs),
+            prior,
+            rounds=2,
+            sizes=sizes,
         )
         if self._state is not None:
             moved = np.zeros(len(self._state.free))

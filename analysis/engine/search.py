@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from analysis.engine.calibrate import Calibrated, calibrate
-from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Fitted, Refiner
 from analysis.engine.screen import Scored, Screen
@@ -28,6 +27,9 @@ share of the size it is screened at."""
 
 WORTH = 12.0
 """A screened hypothesis this far behind the best is not fitted."""
+
+WIDENED = 4
+"""So many of the best are fitted once more with every place free."""
 
 HOPELESS = 60.0
 """A hypothesis that stays this far behind is not fitted to the end."""
@@ -126,6 +128,8 @@ def search(
     singles = finder.screen(null)
     finder.keep(null)
     finder.fit_best(singles, SINGLES, "fitting single causes")
+    if not anew:
+        finder.widen(null, WIDENED)
     for size in range(1, most_causes):
         stage, most = f"fitting sets of {size + 1}", PAIRS if size == 1 else TRIPLES
         parents = [one for one in finder.ranked() if len(one.hypothesis.parts) == size][:PARENTS]
@@ -178,9 +182,8 @@ class _Finder:
         """The best first."""
         return sorted(self._fitted.values(), key=lambda one: -one.log_score)
 
-    def screen(self, parent: Fitted) -> list[Scored]:
-        """One candidate more than a fitted hypothesis has, to first order; the best first."""
-        screen = Screen(
+    def _screen(self, parent: Fitted) -> Screen:
+        return Screen(
             parent.problem,
             self._candidates,
             self._terms_beside(parent),
@@ -189,9 +192,13 @@ class _Finder:
             own=parent.columns,
             state=parent.state,
         )
+
+    def screen(self, parent: Fitted) -> list[Scored]:
+        """One candidate more than a fitted hypothesis has, to first order; the best first."""
+        screen = self._screen(parent)
         found = []
         for i, name in enumerate(self._candidates):
-            if name not in parent.hypothesis.parts:
+            if name not in parent.hypothesis.parts and not self._doubled(parent, name):
                 best = screen.best_of(name)
                 if best is not None:
                     found.append(best)
@@ -235,6 +242,24 @@ class _Finder:
                     for own in (said, small)
                 ]
         return starts
+
+    def widen(self, parent: Fitted, most: int) -> None:
+        """Fit the best once more with every place free: to first order a few may seem enough."""
+        screen = self._screen(parent)
+        for one in self.ranked()[:most]:
+            for name, part in one.hypothesis.parts.items():
+                candidate = self._candidates[name]
+                every = tuple(term.name for term in candidate.terms)
+                if candidate.shareable and len(every) > 1 and (part.shared or part.terms != every):
+                    wide = screen.with_terms(name, every)
+                    self.keep(self._refiner.fit(wide))
+
+    def _doubled(self, parent: Fitted, name: str) -> bool:
+        """Whether a law of its family is on already: two laws of one thing are neither."""
+        family = self._candidates[name].family
+        return bool(family) and any(
+            self._candidates[one].family == family for one in parent.hypothesis.parts
+        )
 
     def _kin(self, scored: Scored) -> set[str]:
         """Families of its candidates."""

@@ -6,7 +6,7 @@ from math import exp, log
 
 import numpy as np
 
-from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.screen import Scored, groups, limits
 from analysis.engine.system import Array, Candidate, Point, Setting, Shape
 

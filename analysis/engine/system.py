@@ -287,8 +287,6 @@ class System(Protocol):
         """What may have been left out."""
         ...
 
-    def simulate(
-        self, points: Sequence[Point], reduce: Callable[[Prediction], Any]
-    ) -> list[Any]:
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """Predict what would be recorded, without noise, and keep what `reduce` makes of it."""
         ...

@@ -79,7 +79,8 @@ def test_a_law_is_less_certain_at_high_harmonics_and_never_more_wrong_than_by_al
     done = np.ones(len(problem.residual))
     spread = np.sqrt(form_variance(problem.labels, done, 0.1, 1.0))
     by_line = [
-        spread[(problem.labels.line == n) & (problem.labels.order == 0)].mean() for n in range(1, 11)
+        spread[(problem.labels.line == n) & (problem.labels.order == 0)].mean()
+        for n in range(1, 11)
     ]
     assert np.all(np.diff(by_line[:5]) > 0)
     assert by_line[-1] < 2.5 * np.sqrt(2)
