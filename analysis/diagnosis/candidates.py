@@ -72,6 +72,9 @@ FRICTION = "friction at the pulleys"
 FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_presliding")
 """Laws of one thing: two of them at once are rather one law that is none of these."""
 
+SHARPEST = 3.0
+"""Presliding this many times shorter than it is screened at is Coulomb's law."""
+
 SATURATION_STEP_N = 0.3
 
 
@@ -118,8 +121,8 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
         else:
             terms.append(_term(one, step, ""))
     shapes = tuple(
-        Shape(one.name, one.unit, one.default, one.low, one.high, policy.shapes[one.name],
-              logarithmic=one.low > 0.0)
+        Shape(one.name, one.unit, one.default, _lowest(one, policy), one.high,
+              policy.shapes[one.name], logarithmic=one.low > 0.0)
         for one in effect.parameters
         if one.name in policy.shapes
     )  # fmt: skip
@@ -138,6 +141,13 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
         chosen_terms=4 if effect.name == "geometry" else 0,
         family=FRICTION if effect.name in FRICTIONS else "",
     )
+
+
+def _lowest(parameter: Parameter, policy: Policy) -> float:
+    """Where a shape's range begins: sharper than this is another law, and slow to simulate."""
+    if parameter.name == "presliding_m":
+        return max(parameter.low, min(policy.shapes[parameter.name]) / SHARPEST)
+    return parameter.low
 
 
 def _term(parameter: Parameter, step: float, place: str) -> Term:

@@ -28,7 +28,7 @@ share of the size it is screened at."""
 WORTH = 12.0
 """A screened hypothesis this far behind the best is not fitted."""
 
-WIDENED = 4
+WIDENED = 3
 """So many of the best are fitted once more with every place free."""
 
 HOPELESS = 60.0
