@@ -16,8 +16,9 @@ TEMPER = 2.0
 KIN_TEMPER = 4.0
 """And among laws of one family by this factor more."""
 
-TEMPER_SHARE = 1.5e-3
-"""Or by this share of what there is to explain: the more there is, the more a law's form counts."""
+TEMPER_SHARE = 0.1
+"""Or by this share of what there is to explain, times the square of the error of form of the laws
+that explain it: the more there is, the more their form counts."""
 
 SIMPLER = 0.7
 """Of laws of one family, each number of shape takes this off the logarithm of odds."""
@@ -127,7 +128,9 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
         (score for score, one in zip(scores, fitted, strict=True) if not one.hypothesis.parts),
         default=scores.max(),
     )
-    temper = max(TEMPER, TEMPER_SHARE * float(scores.max() - nothing))
+    best = fitted[int(np.argmax(scores))]
+    form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
+    temper = max(TEMPER, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])

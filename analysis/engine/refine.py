@@ -225,7 +225,11 @@ class Refiner:
             nuisance_there = nuisance + share * (best.weighed.nuisance - nuisance)
             tried = self._at(there, nuisance_there, used)
             # At one variance: the evidence itself would favour whatever claims to do less.
-            rise = 0.5 * (_misfit_by(best, best) - _misfit_by(tried, best))
+            rise = (
+                tried.log_score - best.log_score
+                if self.anew
+                else 0.5 * (_misfit_by(best, best) - _misfit_by(tried, best))
+            )
             if rise > 0.0 and np.isfinite(tried.log_score):
                 best, state, nuisance, share = tried, there, nuisance_there, 1.0
                 if rise < SETTLED:
