@@ -30,7 +30,7 @@ def make(
 ) -> None:
     """Make runs with concealed effects; what they are is sealed.
 
-    Example: analysis challenge make --n 24 --seed 1 /tmp/challenge
+    Example: analysis challenge make --n 24 --seed 1 challenge
     """
     _engine_there()
     from analysis.challenge.make import make as make_all
@@ -64,7 +64,7 @@ def run(
 ) -> None:
     """Diagnose every case blind; go on where it was interrupted.
 
-    Example: analysis challenge run /tmp/challenge --workers -1
+    Example: analysis challenge run challenge --workers -1
     """
     from analysis.challenge.run import run as run_all
     from analysis.challenge.seal import read_index
@@ -80,11 +80,12 @@ def run(
 def score(
     out: Folder,
     report: Annotated[Path | None, typer.Option(help="write the page of the proof here")] = None,
+    remark: Annotated[str, typer.Option(help="what readers of that page must know")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="results as JSON")] = False,
 ) -> None:
     """Open the seal and hold the answers against the truth.
 
-    Example: analysis challenge score /tmp/challenge --report docs/proof.md
+    Example: analysis challenge score challenge --report docs/proof.md
     """
     from analysis.challenge.score import as_dictionary, write_score
     from analysis.challenge.score import score as score_all
@@ -94,7 +95,7 @@ def score(
     if report is not None:
         from analysis.challenge.report import write_report
 
-        written += write_report(found, report)
+        written += write_report(found, report, remark)
     if as_json:
         say_json(as_dictionary(found))
     else:

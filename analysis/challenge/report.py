@@ -12,14 +12,14 @@ HEADER = """# Proof on concealed data
 <!-- written by `analysis challenge score --report`; run it again, do not edit this page -->
 
 Runs were made by an independent plant: MuJoCo moves the platform, and cables, friction, frame,
-drive, cells and camera follow laws that the fitting library does not hold (bristles for Coulomb
-friction, sliders for hysteresis, catenaries for sag, several vibration modes in two planes). Every
-true machine is off its rig file by what the file's sigmas allow. A quarter of the cases conceal
-nothing, half one effect, a quarter two. Diagnosis saw the runs alone; the truth was sealed before.
+drive, cells and camera follow laws of its own, most of which the fitting library does not hold
+(bristles for Coulomb friction, sliders for hysteresis, catenaries for sag, several vibration modes
+in two planes). Every true machine is off its rig file by what the file's sigmas allow. Diagnosis saw
+the runs alone; the truth was sealed before.
 """
 
 
-def report(score: Score, took_s: float | None = None) -> str:
+def report(score: Score, took_s: float | None = None, remark: str = "") -> str:
     """The page.
 
     Parameters
@@ -28,6 +28,8 @@ def report(score: Score, took_s: float | None = None) -> str:
         Of a challenge.
     took_s
         How long all diagnoses took together; default: their sum.
+    remark
+        What a reader must know of how this set was made and diagnosed.
 
     Returns
     -------
@@ -44,6 +46,7 @@ def report(score: Score, took_s: float | None = None) -> str:
         f"`{score.digest}`.",
         f"Again: `analysis challenge make --n {len(score.grades)} --seed {score.seed} OUT`, then "
         "`run OUT` and `score OUT`.",
+        remark,
         "## Figures\n\nWith 95 % intervals (Wilson for shares, bootstrap over cases for the rest). "
         "A bar is met where the interval does not exclude it.",
         table(score.rows),
@@ -119,8 +122,8 @@ def failures_table(score: Score) -> str:
     return "\n".join(lines)
 
 
-def write_report(score: Score, path: Path) -> list[Path]:
-    """Write the page, its figures beside it in `figures/`.
+def write_report(score: Score, path: Path, remark: str = "") -> list[Path]:
+    """Write the page, its figures beside it in `figures/`; `remark` as for `report`.
 
     Returns
     -------
@@ -132,7 +135,7 @@ def write_report(score: Score, path: Path) -> list[Path]:
 
     figures = path.parent / "figures"
     figures.mkdir(parents=True, exist_ok=True)
-    text = report(score)
+    text = report(score, remark=remark)
     written = draw_confusion(score.confusion, figures / "proof_confusion")
     text += "\n## Confusion\n\n![what was concealed against what was named]"
     text += "(figures/proof_confusion.svg)\n"

@@ -90,6 +90,7 @@ def test_the_papers_guesses_are_answered(found: Result) -> None:
 def test_the_json_has_the_keys_of_the_design(found: Result, folder: Path) -> None:
     stored = json.loads((folder / "diagnose.json").read_text())
     jsonschema.validate(stored, statement_schema())
+    assert set(stored) >= {"verdict", "causes", "remains", "fit", "next_experiment", "improved_rig"}
 
 
 def test_its_figures_are_drawn(found: Result, folder: Path) -> None:
