@@ -70,12 +70,25 @@ def of_strength(
 
 def tamed(case: Case) -> Case:
     """The same case, its effects made smaller until the machine holds together."""
-    while case.concealed and not all(_holds(case, number) for number in range(len(case.runs))):
+    while case.concealed and not holds(case, LOOK_STEP_S):
         case = case.with_concealed(*(one.resized(0.5 * one.size) for one in case.concealed))
     return case
 
 
-def _holds(case: Case, number: int) -> bool:
-    course = case.happened(case.runs[number], LOOK_STEP_S)
-    whole = np.isfinite(course.tension_n).all() and np.isfinite(course.pose).all()
-    return bool(whole and np.abs(course.pose[:, 3:]).max() < FARTHEST_RAD)
+def holds(case: Case, step_s: float) -> bool:
+    """Whether the machine holds together in every run, integrated by this step.
+
+    Parameters
+    ----------
+    case
+        With what it conceals.
+    step_s
+        Of the integration, s.
+    """
+    courses = (case.happened(run, step_s) for run in case.runs)
+    return all(
+        np.isfinite(course.tension_n).all()
+        and np.isfinite(course.pose).all()
+        and np.abs(course.pose[:, 3:]).max() < FARTHEST_RAD
+        for course in courses
+    )

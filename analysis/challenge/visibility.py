@@ -56,10 +56,18 @@ class Metric:
     numbers: tuple[tuple[str, Array | float], ...]
 
     @classmethod
-    def of(cls, case: Case) -> "Metric":
-        """That of a case's machine and runs; what it conceals is left out."""
+    def of(cls, case: Case, step_s: float | None = None) -> "Metric":
+        """That of a case's machine and runs; what it conceals is left out.
+
+        Parameters
+        ----------
+        case
+            Its machine and runs.
+        step_s
+            Of the integration, s; default: the longest at which its friction sticks quietly.
+        """
         bare = case.with_concealed()
-        known = Reference.of(bare, longest_step_s(case))
+        known = Reference.of(bare, step_s or longest_step_s(case))
         columns = []
         numbers = tuple(_steps(case))
         for name, step in numbers:

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from analysis.diagnosis.candidates import candidates, library_values
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
-from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
+from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction, Ring
 from cdpr8.rigfile import Rig
 from model import ActiveEffect, Machine, Simulation, Task, observe, simulate_many
 from model.library.discovery import library
@@ -29,8 +28,13 @@ LANES_FROM = 6
 
 GROUP = 16
 
-GUARD = 0.1
+GUARD = 0.08
 """Share of critical damping that keeps the platform from ringing, where that is asked for."""
+
+MOST_BIAS = 0.1
+"""And no more of it than moves a tone's answer to the drive by this share in quadrature."""
+
+_GUARDS: dict[Ring, tuple[float, ...]] = {"left_out": (0.5, 1.0), "damped": (1.0,), "as_is": (0.0,)}
 
 FAR = 1e6
 """Where a simulation blew up, everything is this far off."""
@@ -115,44 +119,33 @@ class RecordedMachine:
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`.
 
-        A platform without damping of its own rings on for the whole of a run, in a phase that no
-        parameter is known well enough for. What parameters and effects change is therefore taken
-        between two settled simulations, and added to that of the nominal machine as it is.
+        A platform without damping of its own rings on for the whole of a run. Cables that are
+        damped a little end the ring, and bias what is in quadrature by a share that is in
+        proportion to the damping: that of half the damping, twice, less that of the whole has the
+        ring of neither and no bias to first order.
         """
-        settled = self._predict([replace(point, settled=True) for point in points])
-        found: list[Prediction] = []
-        for point, prediction in zip(points, settled, strict=True):
-            if point.settled:
-                found.append(prediction)
-            else:
-                exact, calm = self._nominal
-                found.append([e + p - c for e, p, c in zip(exact, prediction, calm, strict=True)])
-        return [reduce(prediction) for prediction in found]
-
-    @cached_property
-    def _nominal(self) -> tuple[Prediction, Prediction]:
-        """The nominal machine, as it is and settled."""
-        nothing = Point(np.zeros(len(self._known)))
-        exact, calm = self._predict([nothing, replace(nothing, settled=True)])
-        return exact, calm
-
-    def _predict(self, points: Sequence[Point]) -> list[Prediction]:
         predictions: list[Prediction] = [[] for _ in points]
         for record, recording in enumerate(self.recordings):
-            jobs = [self.job(point, record) for point in points]
-            tasks = {job.key: job.task for job in jobs}
-            done = self._solve(tasks)
+            jobs = [[self.job(point, record, share) for share in _GUARDS[point.ring]]
+                    for point in points]  # fmt: skip
+            done = self._solve({job.key: job.task for group in jobs for job in group})
             seen: dict[tuple[object, ...], Prediction] = {}
-            for job, whole in zip(jobs, predictions, strict=True):
-                if job.whole_key not in seen:
-                    seen[job.whole_key] = seen_by(recording, done[job.key], job)
-                whole.extend(seen[job.whole_key])
-        return predictions
+            for group, whole in zip(jobs, predictions, strict=True):
+                key = tuple(job.whole_key for job in group)
+                if key not in seen:
+                    simulation = _without_bias([done[job.key] for job in group])
+                    seen[key] = seen_by(recording, simulation, group[0])
+                whole.extend(seen[key])
+        return [reduce(prediction) for prediction in predictions]
 
-    def job(self, point: Point, record: int) -> _Job:
-        """What one run of a point is."""
+    def job(self, point: Point, record: int, guard: float = 0.0) -> _Job:
+        """What one run of a point is, its cables damped by a share of the guard."""
         recording = self.recordings[record]
         values, start_s, pose_zero, late_s = self._moved(point, record)
+        if guard:
+            mine = values.setdefault("cable_viscous", _nothing("cable_viscous"))
+            damping = guard * _guard(recording.rig, recording.excitation.frequency_hz)
+            mine["viscous_n_s_per_m"] = mine["viscous_n_s_per_m"] + damping
         active = []
         for name in sorted(values):
             effect = ActiveEffect(name, _within(name, values[name]))
@@ -202,10 +195,6 @@ class RecordedMachine:
                     mine[meaning.parameter] = column
                 else:
                     mine[meaning.parameter] = mine.get(meaning.parameter, 0.0) + amount
-        if point.settled:
-            mine = values.setdefault("cable_viscous", _nothing("cable_viscous"))
-            guard = _guard(recording.rig, recording.excitation.frequency_hz)
-            mine["viscous_n_s_per_m"] = mine["viscous_n_s_per_m"] + guard
         return values, start_s, pose_zero, late_s
 
     def _nominal_peaks(self) -> list[float]:
@@ -263,6 +252,19 @@ def seen_by(recording: Recording, simulation: Simulation, job: _Job) -> Predicti
     return found
 
 
+def _without_bias(simulations: Sequence[Simulation]) -> Simulation:
+    """One simulation as it is; of two, the second with twice the damping, none of the bias."""
+    one, other = simulations[0], simulations[-1]
+    if one is other or one.tension_n.shape != other.tension_n.shape:
+        return one
+    return replace(
+        one,
+        tension_n=np.maximum(2.0 * one.tension_n - other.tension_n, 0.0),
+        pose=2.0 * one.pose - other.pose,
+        pose_rate=2.0 * one.pose_rate - other.pose_rate,
+    )
+
+
 def _finite(values: Array) -> Array:
     return np.clip(np.nan_to_num(values, nan=FAR, posinf=FAR, neginf=-FAR), -FAR, FAR)
 
@@ -270,13 +272,19 @@ def _finite(values: Array) -> Array:
 def _guard(rig: Rig, drive_hz: float) -> Array:
     """Damping of the cables that ends the platform's ringing in some cycles, N s/m, shape (8,).
 
-    In proportion to stiffness, so that it leaves the drive's own frequency nearly alone.
+    In proportion to stiffness, so that it leaves the drive's own frequency nearly alone; less of
+    it where the drive comes near a tone, which it would damp as well.
     """
     machine = Machine.from_rig(rig)
     tones = tones_hz(machine)
     above = tones[tones > 1.5 * drive_hz]
     lowest = float(above.min()) if above.size else float(tones.max())
-    return np.asarray(2.0 * GUARD / (2.0 * np.pi * lowest) * machine.stiffness)
+    share = GUARD
+    if drive_hz > 0.0:
+        # By so much more than a share of its damping each tone would be off in quadrature.
+        gain = 2.0 * tones * drive_hz / np.abs(tones**2 - drive_hz**2) * (tones / lowest)
+        share = min(GUARD, MOST_BIAS / float(gain.max()))
+    return np.asarray(2.0 * share / (2.0 * np.pi * lowest) * machine.stiffness)
 
 
 def _nothing(name: str) -> dict[str, Any]:

@@ -154,7 +154,7 @@ class Telling:
             return np.zeros((self._lens.size, 0))
         nuisance = fitted.point.nuisance
         moved = [state, *(state.bumped(k) for k in range(count))]
-        points = [replace(self._point(one, nuisance), settled=True) for one in moved]
+        points = [replace(self._point(one, nuisance), ring="damped") for one in moved]
         found = self._seen(points)
         steps = np.array([state.signed_step(k) for k in range(count)])
         columns = ((found[1:] - found[0]) / steps[:, None]).T

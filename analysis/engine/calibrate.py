@@ -20,7 +20,7 @@ from analysis.engine.lens import Lens
 from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
 from analysis.engine.system import Array, Point, System
 
-ROUNDS = 3
+ROUNDS = 6
 """Steps, at most."""
 
 EXPLAINED = 4.0
@@ -32,8 +32,14 @@ LEAST_TYPICAL = 12
 MEDIAN_OF_SQUARE = 0.455
 """Median of the square of a standard normal number."""
 
-GOOD = 1.3
-"""A misfit below this, a feature, needs no further linearisation."""
+HOPELESS = 40.0
+"""Parameters that leave more than this, a feature, are not what it is, and are not refined."""
+
+WORTH_A_STEP = 6.0
+"""A step is taken where it promises that the squared misfit falls by this."""
+
+SHORTEST, SHORTER = 3, 0.4
+"""A step that went too far is taken again, this much of it, and so often."""
 
 UNKNOWN_SHARE = 0.15
 """Of the residual, what is not the parameters'."""
@@ -92,38 +98,37 @@ def calibrate(
     features = simulate_features(system, lens, [Point(at)])[0]
     columns = nuisance_columns(system, lens, at, progress)
     nominal = at, features, columns
-    for round_ in range(ROUNDS):
-        base = base_variance(lens, features, data)
+    fresh = True
+    for _ in range(ROUNDS):
         residual = data - features
-        variance = base + form_variance(lens.labels, residual, UNKNOWN_SHARE, 1.0)
-        problem = Problem(residual, columns, at, variance, lens.labels, used)
-        frame = Frame(problem, variance)
+        variance = base_variance(lens, features, data)
+        variance = variance + form_variance(lens.labels, residual, UNKNOWN_SHARE, 1.0)
+        frame = Frame(Problem(residual, columns, at, variance, lens.labels, used), variance)
         none = np.zeros((lens.size, 0))
-        target = np.clip(frame.nuisance(none, np.zeros(0)), -FARTHEST, FARTHEST)
-        move = target - at
-        largest = float(np.abs(move).max(initial=0.0))
-        if largest < LINEAR:
-            break
-        share = min(1.0, STRIDE / largest)
+        move = np.clip(frame.nuisance(none, np.zeros(0)), -FARTHEST, FARTHEST) - at
         before = _misfit(residual, at, variance, used)
+        if before - frame.chi2 < WORTH_A_STEP:
+            break
+        share = min(1.0, STRIDE / float(np.abs(move).max(initial=1e-9)))
         better = False
-        for _ in range(3):
+        for _ in range(SHORTEST):
             there = at + share * move
             found = simulate_features(system, lens, [Point(there)])[0]
             if _misfit(data - found, there, variance, used) < before:
                 better = True
                 break
-            share *= 0.4
-        if not better:
+            share *= SHORTER
+        if better:
+            foretold = features + columns @ (there - at)
+            missed = _misfit(found - foretold, np.zeros(1), variance, used)
+            moved = _misfit(found - features, np.zeros(1), variance, used)
+            at, features = there, found
+            straight = missed < LINEAR**2 * moved
+        if not better and fresh:
             break
-        foretold = features + columns @ (there - at)
-        missed = _misfit(found - foretold, np.zeros(1), variance, used)
-        moved = _misfit(found - features, np.zeros(1), variance, used)
-        at, features = there, found
-        good = _misfit(data - features, at, base, used) < GOOD * int(used.sum())
-        if good:
-            break
-        if missed > LINEAR**2 * moved and round_ == 0:
+        left = _misfit(data - features, at, base_variance(lens, features, data), used)
+        fresh = (not better or not straight) and left < HOPELESS * int(used.sum())
+        if fresh:
             columns = nuisance_columns(system, lens, at, progress)
     base = base_variance(lens, features, data)
     if _misfit(data - features, at, base, used) > EXPLAINED * int(used.sum()):

@@ -8,6 +8,7 @@ over their priors, to first order about where the residual was simulated.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,9 @@ all of them, this share of what the law does."""
 LEAKED = 0.5
 """Of a ring, this share is seen one line away, half of that two lines away, and so on."""
 
+FOLLOWED = 0.25
+"""Of what nuisances take back of a change, this share counts as the law's."""
+
 MOST_FORM = 1.0
 """However high the harmonic, a law is not more wrong than by all it does."""
 
@@ -74,6 +78,19 @@ class Problem:
     base: Array
     labels: Labels
     used: NDArray[np.bool_]
+
+    @cached_property
+    def _at_base(self) -> "Frame":
+        return Frame(self, self.base)
+
+    def beyond(self, done: Array) -> Array:
+        """A change less most of what the nuisances can take back of it, shape (f,).
+
+        What they take back is not seen, however wrong a law is about it; but they cannot follow
+        every error of form of what they can follow as a whole.
+        """
+        left = done - self.nuisance @ self._at_base.absorbed(done)
+        return np.asarray(np.hypot(left, FOLLOWED * done))
 
 
 @dataclass(frozen=True)
@@ -135,6 +152,11 @@ class Frame:
         ja = self._half(self.j.T @ a)
         return a.T @ a - ja.T @ ja, a.T @ self.r - ja.T @ self._jr
 
+    def absorbed(self, change: Array) -> Array:
+        """By how much the nuisances would move to take a change back, shape (p,)."""
+        moved = self.j.T @ (change[self._used] / self.root)
+        return np.asarray(cho_solve((self._factor, True), moved))
+
     def nuisance(self, columns: Array, estimate: Array) -> Array:
         """The likeliest nuisances, given the columns' factors."""
         rest = self.r - (columns[self._used] / self.root[:, None]) @ estimate
@@ -142,7 +164,9 @@ class Frame:
         return found
 
 
-def form_variance(labels: Labels, done: Array, share: float, size: float) -> Array:
+def form_variance(
+    labels: Labels, done: Array, share: float, size: float, beyond: Array | None = None
+) -> Array:
     """Variance that the error of form of one candidate gives the features.
 
     Parameters
@@ -153,9 +177,12 @@ def form_variance(labels: Labels, done: Array, share: float, size: float) -> Arr
         What the candidate does to each, shape (f,).
     share, size
         The candidate's error of form, and the size it is taken at.
+    beyond
+        What of it counts where it acts, shape (f,); default: all.
     """
-    power = group_power(labels, done)
-    moving = np.where((labels.line > 0.0) & ~labels.ringing, done**2, 0.0)
+    felt = done if beyond is None else beyond
+    power = group_power(labels, felt)
+    moving = np.where((labels.line > 0.0) & ~labels.ringing, felt**2, 0.0)
     total = np.bincount(labels.stretch, moving)[labels.stretch]
     spill = np.where(labels.order > 0, SPILLED_SLOW, SPILLED)
     spill = np.where(labels.every, np.sqrt(SPREAD / labels.samples), spill)
@@ -163,7 +190,8 @@ def form_variance(labels: Labels, done: Array, share: float, size: float) -> Arr
     variance = relative**2 * (power + spill**2 * total)
     # What it does while the motion repeats says how far its memory may be off elsewhere.
     series, steady = labels.series, ~labels.free
-    done_there = np.bincount(series, np.where(steady, moving, 0.0))
+    repeats = (labels.line > 0.0) & ~labels.ringing & steady
+    done_there = np.bincount(series, np.where(repeats, done**2, 0.0))
     _, first = np.unique(labels.stretch, return_index=True)
     samples = np.bincount(
         series[first], np.where(steady[first], labels.samples[first], 0), len(done_there)
@@ -204,8 +232,8 @@ def directions(nuisance: Array, base: Array, used: NDArray[np.bool_]) -> Array:
 def base_variance(lens: Lens, features: Array, data: Array) -> Array:
     """Variance of the features where nothing was left out: noise, and the simulator's own error.
 
-    A ring cannot be foretold, and over a stretch that does not hold a whole number of its periods
-    it is seen on other lines too, less the farther they are.
+    A ring cannot be foretold, and is seen on other lines too, less the farther they are: over a
+    stretch that repeats, as it is found in the recording; over another, by its own lines.
 
     Parameters
     ----------
@@ -222,17 +250,13 @@ def base_variance(lens: Lens, features: Array, data: Array) -> Array:
     coloured = group_power(labels, np.where(moving, features, 0.0))
     coloured += SPREAD * total[labels.stretch] / labels.samples
     variance = 1.0 + share**2 * np.where(labels.every, coloured, total[labels.stretch])
-    rung = np.where(labels.ringing, np.maximum(features**2, data**2) - 1.0, 0.0)
-    for stretch in np.unique(labels.stretch[labels.ringing]):
+    variance += lens.rung
+    rung = np.where(labels.ringing & labels.free, np.maximum(features**2, data**2) - 1.0, 0.0)
+    for stretch in np.unique(labels.stretch[labels.ringing & labels.free]):
         own = np.flatnonzero(labels.stretch == stretch)
         lines = labels.line[own]
         apart = np.unique(np.round(lines, 6))
         spacing = float(np.diff(apart).min()) if len(apart) > 1 else 1.0
-        if not labels.free[own[0]]:
-            # Harmonics stand as many of the stretch's own lines apart as it has periods.
-            segment = lens.bundles[labels.bundle[own[0]]].segments[labels.segment[own[0]]]
-            hertz = segment.fundamental_hz or 1.0
-            spacing = 1.0 / ((segment.end_s - segment.start_s) * hertz)
         distance = np.abs(lines[:, None] - lines[None, :]) / spacing
         leaks = (LEAKED / np.maximum(distance, 1.0)) ** 2
         variance[own] += leaks @ np.maximum(rung[own], 0.0)
@@ -297,7 +321,9 @@ def weigh(
                         else problem.residual
                     )
                 # Errors of form add up: what one law does is not surer for being shared by two.
-                spread += np.sqrt(form_variance(problem.labels, does, shares[name], size))
+                beyond = problem.beyond(does)
+                own = form_variance(problem.labels, does, shares[name], size, beyond)
+                spread += np.sqrt(own)
             variance = problem.base + spread**2
             frame = Frame(problem, variance)
             matrix, right = frame.normal(stacked)

@@ -9,6 +9,7 @@ looked at, that is why it is lines and not samples: what is wrong with a law has
 the law does, and of sixty thousand samples of a slow signal a few hundred lines tell anything.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,10 +36,16 @@ FAR_ABOVE = 1.5
 NEAR = 0.15
 """Lines this near a tone, as a share of it, may be its ring."""
 
+SOUGHT = 0.05
+"""A ring is sought this near a tone, as a share of it."""
+
+ALIASED = 0.03
+"""The same where a tone is seen at another frequency, being faster than it is sampled."""
+
 WIDTH = 1.5
 """And lines this near, in lines of a stretch that does not repeat."""
 
-RESONANT = 0.25
+RESONANT = 0.15
 """A drive this near a tone, as a share of itself, leaves nothing but means to be foretold."""
 
 BAND = 0.05
@@ -132,6 +139,7 @@ class Lens:
         self.bundles = tuple(bundles)
         self._parts: list[_Part] = []
         rows: list[tuple[float, ...]] = []
+        rung: list[Array] = []
         group, stretch = 0, -1
         for b, bundle in enumerate(self.bundles):
             whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
@@ -150,6 +158,12 @@ class Lens:
                     vectors, lines = _vectors(bundle.t_s[inside], segment)
                     basis, kept = _orthonormal(vectors)
                 self._parts.append(_Part(b, inside, basis, whiten))
+                if basis is None or segment.fundamental_hz is None:
+                    rung.append(np.zeros(len(kept) * len(bundle.names)))
+                else:
+                    seen = bundle.value[inside] @ whiten.T
+                    steady = np.array([lines[place][2] == 0 for place in kept])
+                    rung.append(leaked(bundle.t_s[inside], seen, basis, steady, bundle.tones_hz))
                 hertz = segment.fundamental_hz or 1.0
                 unit = 1.0 if segment.fundamental_hz is not None else _drive_hz(bundle)
                 for c in range(len(bundle.names)):
@@ -167,7 +181,7 @@ class Lens:
                                 c,
                                 s,
                                 line,
-                                _rings(line * hertz, segment, bundle),
+                                _rings(line * hertz, order, segment, bundle),
                                 max(line / unit, 1.0),
                                 quadrature,
                                 order,
@@ -180,6 +194,9 @@ class Lens:
                                 segment.sealed,
                             )
                         )
+        self.rung: Array = np.concatenate(rung) if rung else np.zeros(0)
+        """What the ring of the recording gives each feature of a stretch that repeats, as variance,
+        shape (f,)."""
         columns = list(zip(*rows, strict=True)) if rows else [()] * 15
         self.labels = Labels(
             bundle=np.array(columns[0], dtype=np.int64),
@@ -233,13 +250,12 @@ class Lens:
         return self([bundle.value for bundle in self.bundles])
 
 
-def _rings(line_hz: float, segment: Segment, bundle: Bundle) -> bool:
+def _rings(line_hz: float, order: int, segment: Segment, bundle: Bundle) -> bool:
     """Whether a line may be the system's own ring."""
     drive_hz = _drive_hz(bundle)
+    length_s = segment.end_s - segment.start_s
     # Over a short stretch a ring is as wide as the stretch is short.
-    wide_hz = 0.0
-    if segment.fundamental_hz is None:
-        wide_hz = WIDTH / (segment.end_s - segment.start_s)
+    wide_hz = WIDTH / length_s if segment.fundamental_hz is None else 0.0
     if line_hz > 0.0 and any(
         abs(tone - drive_hz) < RESONANT * drive_hz for tone in bundle.tones_hz
     ):
@@ -247,7 +263,56 @@ def _rings(line_hz: float, segment: Segment, bundle: Bundle) -> bool:
     above = [tone for tone in bundle.tones_hz if tone > FAR_ABOVE * drive_hz]
     if above and line_hz >= min(above) - max(NEAR * min(above), wide_hz):
         return True
-    return any(abs(line_hz - tone) < max(NEAR * tone, wide_hz) for tone in bundle.tones_hz)
+    if any(abs(line_hz - tone) < max(NEAR * tone, wide_hz) for tone in bundle.tones_hz):
+        return True
+    if not (line_hz or order):
+        return False
+    # What is sampled slower than a tone shows it elsewhere.
+    rate_hz = (len(bundle.t_s) - 1) / (bundle.t_s[-1] - bundle.t_s[0])
+    slow_hz = 0.5 * (order + 1) / length_s
+    return any(
+        abs(abs(tone - round(tone / rate_hz) * rate_hz) - line_hz)
+        < max(ALIASED * tone, wide_hz) + slow_hz
+        for tone in bundle.tones_hz
+        if tone > 0.5 * rate_hz
+    )
+
+
+def leaked(
+    t_s: Array, value: Array, basis: Array, steady: NDArray[np.bool_], tones_hz: Sequence[float]
+) -> Array:
+    """Variance that rings at the tones give vectors that are not made for them.
+
+    Parameters
+    ----------
+    t_s, value
+        Samples in units of their noise, shapes (n,), (n, m).
+    basis
+        The vectors, shape (n, k).
+    steady
+        Those that are no ring: a slow change may be one, shape (k,).
+    tones_hz
+        Where to look for rings, each within a few per cent of it.
+
+    Returns
+    -------
+    Array
+        Channel by channel, shape (m k,).
+    """
+    rest = value - basis[:, steady] @ (basis[:, steady].T @ value)
+    found = np.zeros((value.shape[1], basis.shape[1]))
+    step_hz = 0.25 / (t_s[-1] - t_s[0])
+    for tone in tones_hz:
+        count = int(SOUGHT * tone / step_hz)
+        turns = np.exp(2j * np.pi * np.outer(tone + step_hz * np.arange(-count, count + 1), t_s))
+        power = 4.0 * np.abs(turns @ rest) ** 2 / len(t_s) ** 2
+        loudest = np.argmax(power, axis=0)
+        # The loudest of so many lines of noise alone is this loud.
+        noise = 4.0 / len(t_s) * np.log(2.0 + count)
+        for c, place in enumerate(loudest):
+            amplitude = max(float(power[place, c]) - noise, 0.0)
+            found[c] += 0.5 * amplitude * np.abs(turns[place] @ basis) ** 2
+    return found.reshape(-1)
 
 
 def _drive_hz(bundle: Bundle) -> float:

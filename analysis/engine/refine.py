@@ -248,18 +248,17 @@ class Refiner:
         if count or names:
             calm = [state, *(state.bumped(k) for k in range(count))]
             calm += [state.without(name) for name in names]
-            points += [replace(one.point(there), settled=True) for one in calm]
+            points += [replace(one.point(there), ring="damped") for one in calm]
         found = simulate_features(self.system, self.lens, points)
         # With numbers far out a simulation may come to nothing.
         sound = bool(np.isfinite(found).all())
         found = np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)
-        features, settled = found[0], found[1:]
+        features, damped = found[0], found[1:]
         columns = np.stack(
-            [(settled[1 + k] - settled[0]) / state.signed_step(k) for k in range(count)], axis=1
+            [(damped[1 + k] - damped[0]) / state.signed_step(k) for k in range(count)], axis=1
         ) if count else np.zeros((len(features), 0))  # fmt: skip
-        # What rings with one hypothesis and not with another is no measure of what it does.
         done = {
-            name: settled[0] - row for name, row in zip(names, settled[1 + count :], strict=True)
+            name: damped[0] - row for name, row in zip(names, damped[1 + count :], strict=True)
         }
         order = [k for name in names for k in state.places(name)]
         lows, highs = state.bounds()

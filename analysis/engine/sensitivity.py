@@ -52,11 +52,11 @@ def nuisance_columns(
         Candidates that are on.
     """
     on = dict(effects or {})
-    points = [Point(about, on, settled=True)]
+    points = [Point(about, on, ring="damped")]
     for i, nuisance in enumerate(system.nuisances):
         at = about.copy()
         at[i] += nuisance.step
-        points.append(Point(at, on, settled=True))
+        points.append(Point(at, on, ring="damped"))
     found = simulate_features(system, lens, points, progress)
     steps = np.array([one.step for one in system.nuisances])
     return _finite((found[1:] - found[0]) / steps[:, None]).T
@@ -88,7 +88,7 @@ def term_columns(
     effects
         Others that are on.
     """
-    base = Point(about, dict(effects or {}), settled=True)
+    base = Point(about, dict(effects or {}), ring="damped")
     points = [base]
     places: list[tuple[str, int, int, float]] = []
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}

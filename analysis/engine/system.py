@@ -2,12 +2,16 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+Ring = Literal["left_out", "damped", "as_is"]
+"""Left out, with no bias on other lines; damped, which is cheaper and good for differences of two
+simulations; or as the simulator has it."""
 
 
 @dataclass(frozen=True)
@@ -250,14 +254,14 @@ class Point:
         In sigmas, shape (p,); zero is the nominal.
     effects
         Candidates that are on.
-    settled
-        Simulate with whatever keeps the system from ringing: wanted for differences of two
-        simulations only, in which a ring would hide what the drive's own lines show.
+    ring
+        What becomes of the system's own ring, where it has one: the phase of a ring that a kick
+        left long ago cannot be foretold, and hides what the drive's own lines show.
     """
 
     nuisance: Array
     effects: Mapping[str, Setting] = field(default_factory=dict)
-    settled: bool = False
+    ring: Ring = "left_out"
 
 
 Prediction = list[Array]
