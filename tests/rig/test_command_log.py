@@ -28,9 +28,11 @@ from cdpr8.runfolder import (
 )
 from cdpr8.runfolder.tables import COMMAND
 from cdpr8.terminal import run_app
+from rig.arrival_clock import ArrivalClock
 from rig.command import app
 from rig.command_columns import QUANTITIES, CommandColumns, LineReader
-from rig.command_log import ArrivalClock, CommandLog, CommandStream, open_command_log
+from rig.command_log import CommandLog, open_command_log
+from rig.command_stream import CommandStream
 from rig.recorder import Recording, record
 from rig.scribe import CommandLine, DirectScribe
 from rig.simulated.rig import assemble
