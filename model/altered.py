@@ -18,78 +18,16 @@ STEEPNESS = 4
 
 
 @dataclass(frozen=True)
-class Altered:
-    """A motion made larger, faster or later.
+class _Imperfect:
+    """A motion made of a commanded one; its times are as commanded where nothing else is said.
 
     Parameters
     ----------
     motion
         As commanded.
-    factor
-        On the whole of it.
-    pace
-        How much faster it runs from its start on.
-    late_s
-        How much later it starts.
     """
 
     motion: Motion
-    factor: float = 1.0
-    pace: float = 1.0
-    late_s: float = 0.0
-
-    @property
-    def start_s(self) -> float:
-        """When it starts."""
-        return self.motion.start_s + self.late_s
-
-    @property
-    def duration_s(self) -> float:
-        """How long the whole lasts: as commanded."""
-        return self.motion.duration_s
-
-    @property
-    def breaks_s(self) -> tuple[float, ...]:
-        """Where it is not smooth."""
-        return tuple(self._when(time_s) for time_s in self.motion.breaks_s)
-
-    @property
-    def steady_window_s(self) -> tuple[float, float]:
-        """Where amplitudes are taken: as commanded."""
-        return self.motion.steady_window_s
-
-    def at(self, time_s: Array, within_s: Array | None = None) -> Command:
-        """X*, X*' and X*''; see `Motion.at`."""
-        within = None if within_s is None else self._inner(np.asarray(within_s))
-        pose, rate, acceleration = self.motion.at(self._inner(np.asarray(time_s)), within)
-        first, second = self.factor * self.pace, self.factor * self.pace**2
-        return self.factor * pose, first * rate, second * acceleration
-
-    def _inner(self, time_s: Array) -> Array:
-        start_s = self.motion.start_s
-        inner: Array = start_s + self.pace * (time_s - self.start_s)
-        return inner
-
-    def _when(self, inner_s: float) -> float:
-        return self.start_s + (inner_s - self.motion.start_s) / self.pace
-
-
-@dataclass(frozen=True)
-class Distorted:
-    """A sine with one harmonic.
-
-    Parameters
-    ----------
-    motion
-        As commanded; one that is no sine stays as it is.
-    share, order, phase_rad
-        Amplitude over that of the sine, order and phase of the harmonic.
-    """
-
-    motion: Motion
-    share: float
-    order: int
-    phase_rad: float
 
     @property
     def start_s(self) -> float:
@@ -110,6 +48,69 @@ class Distorted:
     def steady_window_s(self) -> tuple[float, float]:
         """Where amplitudes are taken."""
         return self.motion.steady_window_s
+
+
+@dataclass(frozen=True)
+class Altered(_Imperfect):
+    """A motion made larger, faster or later.
+
+    Parameters
+    ----------
+    motion
+        As commanded.
+    factor
+        On the whole of it.
+    pace
+        How much faster it runs from its start on.
+    late_s
+        How much later it starts.
+    """
+
+    factor: float = 1.0
+    pace: float = 1.0
+    late_s: float = 0.0
+
+    @property
+    def start_s(self) -> float:
+        """When it starts."""
+        return self.motion.start_s + self.late_s
+
+    @property
+    def breaks_s(self) -> tuple[float, ...]:
+        """Where it is not smooth."""
+        return tuple(self._when(time_s) for time_s in self.motion.breaks_s)
+
+    def at(self, time_s: Array, within_s: Array | None = None) -> Command:
+        """X*, X*' and X*''; see `Motion.at`."""
+        within = None if within_s is None else self._inner(np.asarray(within_s))
+        pose, rate, acceleration = self.motion.at(self._inner(np.asarray(time_s)), within)
+        first, second = self.factor * self.pace, self.factor * self.pace**2
+        return self.factor * pose, first * rate, second * acceleration
+
+    def _inner(self, time_s: Array) -> Array:
+        start_s = self.motion.start_s
+        inner: Array = start_s + self.pace * (time_s - self.start_s)
+        return inner
+
+    def _when(self, inner_s: float) -> float:
+        return self.start_s + (inner_s - self.motion.start_s) / self.pace
+
+
+@dataclass(frozen=True)
+class Distorted(_Imperfect):
+    """A sine with one harmonic.
+
+    Parameters
+    ----------
+    motion
+        As commanded; one that is no sine stays as it is.
+    share, order, phase_rad
+        Amplitude over that of the sine, order and phase of the harmonic.
+    """
+
+    share: float
+    order: int
+    phase_rad: float
 
     def at(self, time_s: Array, within_s: Array | None = None) -> Command:
         """X*, X*' and X*''; see `Motion.at`."""
@@ -146,7 +147,7 @@ def _sines(motion: Motion) -> tuple[RampedSine, ...]:
 
 
 @dataclass(frozen=True)
-class Loose:
+class Loose(_Imperfect):
     """A motion that plays by d to either side, on its angles.
 
     Parameters
@@ -157,28 +158,7 @@ class Loose:
         Half the play, d.
     """
 
-    motion: Motion
     play_rad: float
-
-    @property
-    def start_s(self) -> float:
-        """When it starts."""
-        return self.motion.start_s
-
-    @property
-    def duration_s(self) -> float:
-        """How long the whole lasts."""
-        return self.motion.duration_s
-
-    @property
-    def breaks_s(self) -> tuple[float, ...]:
-        """Where it is not smooth."""
-        return self.motion.breaks_s
-
-    @property
-    def steady_window_s(self) -> tuple[float, float]:
-        """Where amplitudes are taken."""
-        return self.motion.steady_window_s
 
     def at(self, time_s: Array, within_s: Array | None = None) -> Command:
         """X*, X*' and X*''; see `Motion.at`."""

@@ -1,20 +1,16 @@
-"""The kernel compiled by numba, kept on disk so that a machine compiles it once.
+"""The kernel compiled by numba, kept on disk under a fingerprint of all its sources.
 
-numba's own cache looks at the file of the compiled function only, and would go on serving it after
-a change in `cable` or `platform`. So the cache folder is named by a fingerprint of everything that
-shapes the machine code: the sources, numba, Python and the processor.
+See `cdpr8.machine_code` for why.
 """
 
-import hashlib
-import os
-import platform as computer
-import tempfile
 from collections.abc import Callable
 from functools import cache
 from inspect import isfunction
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+
+from cdpr8 import machine_code
 
 Announce = Callable[[str], None]
 
@@ -97,37 +93,17 @@ def _kernel_modules() -> tuple[ModuleType, ...]:
 
 
 def fingerprint() -> str:
-    """Names all that shapes the machine code: change any of it, and the name is another."""
-    import llvmlite
-    import numba
-    import numpy as np
-
+    """Names all that shapes the kernel's machine code, as `cdpr8.machine_code.fingerprint`."""
     from model.library import assembled
 
-    parts = [numba.__version__, llvmlite.__version__, np.__version__, computer.python_version()]
-    parts += [computer.machine(), _processor(), assembled.TEXT, Path(__file__).read_text()]
-    parts += [Path(str(module.__file__)).read_text() for module in _kernel_modules()]
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
-
-
-def _processor() -> str:
-    """The processor's name and features: machine code for one may not run on another."""
-    from llvmlite import binding
-
-    return f"{binding.get_host_cpu_name()} {binding.get_host_cpu_features().flatten()}"
+    own = [assembled.TEXT, Path(__file__).read_text()]
+    laws = [Path(str(module.__file__)).read_text() for module in _kernel_modules()]
+    return machine_code.fingerprint(own + laws)
 
 
 def cache_folder() -> Path | None:
     """Where this kernel's machine code is kept; None where nothing can be written."""
-    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    root = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(user) / "cdpr8" / "numba")
-    folder = root / f"kernel-{fingerprint()}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
-        return None
-    return folder
+    return machine_code.cache_folder(f"kernel-{fingerprint()}")
 
 
 def _is_cached(name: str) -> bool:
@@ -148,13 +124,9 @@ def compiled(name: str) -> Any:
         options["fastmath"] = FAST
     _compile_laws()
     folder = cache_folder()
-    before = numba.config.CACHE_DIR
-    try:
-        numba.config.CACHE_DIR = str(folder or "")
+    with machine_code.kept_in(folder):
         whole = getattr(module, name)
         return numba.njit(cache=folder is not None, nogil=True, **options)(whole)
-    finally:
-        numba.config.CACHE_DIR = before
 
 
 @cache

@@ -19,7 +19,8 @@ from cdpr8.runfolder import (
 )
 from rig.announcements import AnnouncementStream, announcements
 from rig.bus import Bus
-from rig.command_log import CommandLog, CommandStream
+from rig.command_log import CommandLog
+from rig.command_stream import CommandStream
 from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
 from rig.reserve import Reserve

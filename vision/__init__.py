@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from vision.camera_model import CameraModel
     from vision.exposure import corrected_amplitude, exposure_attenuation
     from vision.plate import Plate, Singles
-    from vision.track import track_run, track_video
+    from vision.tracked_run import track_run
+    from vision.tracked_video import track_video
 
 __all__ = [
     "CameraModel",
@@ -31,8 +32,8 @@ _HOMES = {
     "exposure_attenuation": "vision.exposure",
     "Singles": "vision.plate",
     "load_board": "vision.board_file",
-    "track_run": "vision.track",
-    "track_video": "vision.track",
+    "track_run": "vision.tracked_run",
+    "track_video": "vision.tracked_video",
 }
 
 

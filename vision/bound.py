@@ -65,7 +65,8 @@ class ViewBound:
 
 def bound_of_pose(plate: Plate, pose: CameraPose, camera: CameraModel) -> Array | None:
     """Least covariance of a pose, (6, 6); None where the plate is not wholly and well in view."""
-    from vision.alignment_kernel import SHARED, accumulate, placed
+    from vision.normal_equations_kernel import SHARED, accumulate
+    from vision.projection_kernel import placed
 
     printed = print_of(plate)
     windows = windows_of(printed, pose.rotation, pose.translation, camera)

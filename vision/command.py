@@ -151,7 +151,7 @@ def _track_run(
     from cdpr8.runfolder.read import load_run
     from cdpr8.runfolder.tables import POSE
     from vision.tables import write_poses
-    from vision.track import track_run
+    from vision.tracked_run import track_run
 
     run = load_run(find_run(source))
     notes += run.notes
@@ -206,7 +206,7 @@ def _track_video(
     notes: list[str],
 ) -> tuple["pd.DataFrame", Path]:
     from vision.tables import VIDEO_POSE, write_poses
-    from vision.track import track_video
+    from vision.tracked_video import track_video
 
     camera, looked_for = _set_up(path, rig_file, intrinsics, board)
     with progress("tracking", None) as step:
@@ -277,7 +277,7 @@ def overlay(
         from cdpr8.rigfile.load import load_rig
         from cdpr8.runfolder.find import find_run
         from cdpr8.runfolder.read import load_run
-        from vision.track import camera_and_plate
+        from vision.tracked_run import camera_and_plate
 
         of_videos = {"--intrinsics": intrinsics, "--board": board}
         _refuse(of_videos, "a run", "a run has its own rig file, or the one named with --rig")

@@ -14,7 +14,7 @@ from cdpr8.runfolder.tables import FrameFlag
 from vision.growing_video import PATIENCE_S, read_growing
 from vision.mounting import Mounting, PlatformPose, mounting_of
 from vision.refine import Refinement
-from vision.track import camera_and_plate, poses_from_sightings
+from vision.tracked_run import camera_and_plate, poses_from_sightings
 from vision.tracker import Sighting, Tracker
 
 if TYPE_CHECKING:

@@ -81,7 +81,7 @@ class PixelWindows:
     Attributes
     ----------
     lens, middle, window
-        As `vision.alignment_kernel.accumulate` takes them.
+        As `vision.normal_equations_kernel.accumulate` takes them.
     reach
         Modules of paper beyond each marker.
     size_m
@@ -174,7 +174,9 @@ def align_print(
     Alignment or None
         None where markers are too small, too faint, or not as printed.
     """
-    from vision.alignment_kernel import COLUMNS, SHARED, accumulate, align, placed
+    from vision.alignment_kernel import align
+    from vision.normal_equations_kernel import COLUMNS, SHARED, accumulate
+    from vision.projection_kernel import placed
 
     windows = windows_of(printed, rotation, translation, camera)
     if windows is None:
@@ -237,7 +239,7 @@ def align_print(
 
 def _misfit(normals: Array, pulls: Array, variance: float) -> float:
     """How much the markers pull away from each other (the score test of their displacement)."""
-    from vision.alignment_kernel import SHARED
+    from vision.normal_equations_kernel import SHARED
 
     count = len(normals)
     if count < 2:
@@ -256,7 +258,7 @@ def markers_alone(normals: Array, pulls: Array, shared: int) -> tuple[Array, Arr
     Parameters
     ----------
     normals, pulls
-        As `vision.alignment_kernel.accumulate` gives them, n markers with all columns.
+        As `vision.normal_equations_kernel.accumulate` gives them, n markers with all columns.
     shared
         How many columns are pose and light.
 

@@ -160,7 +160,8 @@ def _reduced(
     view: PlateView, pose: CameraPose, plate: Plate, printed: MarkerPrint, camera: CameraModel
 ) -> tuple[CameraPose, Array, Array, NDArray[np.intp]] | None:
     """Pose of a frame, and its normal equations for the markers, its own unknowns eliminated."""
-    from vision.alignment_kernel import COLUMNS, SHARED, accumulate, placed
+    from vision.normal_equations_kernel import COLUMNS, SHARED, accumulate
+    from vision.projection_kernel import placed
 
     chosen = [plate.ids.index(marker) for marker in view.ids]
     seen = printed.of(chosen)

@@ -104,18 +104,14 @@ class MemoryTransport(LineEnd):
         until_s = min(deadline_s, self.clock.monotonic_s() + AHEAD_S)
         pending = self._far_end.speak(until_s)
         while len(data) < count:
-            chunk = pending[0] if pending else None
-            ready = 0 if chunk is None else min(chunk.arrived(until_s), count - len(data))
-            if chunk is None or ready == 0:
+            ready = min(pending[0].arrived(until_s), count - len(data)) if pending else 0
+            if ready == 0:
                 if until_s >= deadline_s:
                     break
                 until_s = min(deadline_s, until_s + AHEAD_S)
                 pending = self._far_end.speak(until_s)
                 continue
-            if ready < len(chunk.data):
-                chunk, pending[0] = chunk.split(ready)
-            else:
-                pending.popleft()
+            chunk = _taken_off(pending, ready)
             data += chunk.data
             damaged |= chunk.damaged
             last_s = chunk.last_s
@@ -129,10 +125,7 @@ class MemoryTransport(LineEnd):
         data = b""
         damaged = False
         while pending and (ready := pending[0].arrived(now_s)):
-            if ready < len(pending[0].data):
-                chunk, pending[0] = pending[0].split(ready)
-            else:
-                chunk = pending.popleft()
+            chunk = _taken_off(pending, ready)
             data += chunk.data
             damaged |= chunk.damaged
             last_s = chunk.last_s
@@ -143,3 +136,11 @@ class MemoryTransport(LineEnd):
 
     def close(self) -> None:
         """Nothing to give back."""
+
+
+def _taken_off(pending: deque[Chunk], count: int) -> Chunk:
+    """The first `count` bytes of what is pending, no more than its first chunk has."""
+    if count < len(pending[0].data):
+        chunk, pending[0] = pending[0].split(count)
+        return chunk
+    return pending.popleft()

@@ -1,6 +1,6 @@
 """Stand-ins for what a recording needs: a platform, a camera, a line with a script."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from cdpr8.clock import Clock, VirtualClock
 from cdpr8.rigfile import Excitation, Rig
+from cdpr8.runfolder import BAD_TENSION, Run
+from rig.machine import Machine
 from rig.recorder import Recording, record
 from rig.simulated.bus import SimulatedBus
 from rig.simulated.faults import LineFaults
@@ -159,7 +161,45 @@ def record_virtually(
     )
 
 
+def at_origin(machine: Machine, act: Callable[[float], None]) -> None:
+    """Have `act(origin_s)` done when the run begins."""
+    begin = machine.begin
+
+    def act_and_begin(origin_s: float) -> None:
+        act(origin_s)
+        begin(origin_s)
+
+    machine.begin = act_and_begin
+
+
+def record_spoiled(
+    rig: Rig,
+    folder: Path,
+    duration_s: float,
+    rates: dict[str, float],
+    *,
+    platform: WavePlatform | None = None,
+    seed: int = 3,
+) -> tuple[Recording, LineFaults]:
+    """A recording over a line that spoils bytes, each kind at its rate, from the origin on."""
+    faults = LineFaults(np.random.default_rng(seed))
+    clock = virtual_clock()
+    machine = assemble(rig, platform or WavePlatform(), None, clock, seed=1, faults=faults)
+    at_origin(machine, lambda _: vars(faults).update(rates))
+    recording = record(
+        rig, rig_text(), folder, excitation=motion(duration_s), clock=clock, machine=machine
+    )
+    return recording, faults
+
+
 def rig_text() -> str:
     from cdpr8.rigfile import packaged_rig_path
 
     return packaged_rig_path().read_text(encoding="utf-8")
+
+
+def all_true(run: Run) -> bool:
+    """Whether every good value is the tension of its own cable, within 8 sigma of its noise."""
+    good = (run.tension["status"] & int(BAD_TENSION)) == 0
+    rows = run.tension[good]
+    return bool((np.abs(rows["tension_n"] - 5.0 - 2.0 * rows["cable"]) < 0.04).all())

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rig_stand_ins import WavePlatform, motion, record_virtually, rig_text, virtual_clock
+from rig_stand_ins import WavePlatform, at_origin, motion, record_virtually, rig_text, virtual_clock
 
 from cdpr8.clock import RealClock
 from cdpr8.errors import DataError, DeviceError, UsageError
@@ -28,9 +28,11 @@ from cdpr8.runfolder import (
 )
 from cdpr8.runfolder.tables import COMMAND
 from cdpr8.terminal import run_app
+from rig.arrival_clock import ArrivalClock
 from rig.command import app
 from rig.command_columns import QUANTITIES, CommandColumns, LineReader
-from rig.command_log import ArrivalClock, CommandLog, CommandStream, open_command_log
+from rig.command_log import CommandLog, open_command_log
+from rig.command_stream import CommandStream
 from rig.recorder import Recording, record
 from rig.scribe import CommandLine, DirectScribe
 from rig.simulated.rig import assemble
@@ -47,13 +49,11 @@ def recorded(
     """A recording of `seconds`, while `act` writes a log on a thread of its own."""
     clock = RealClock()
     machine = assemble(rig, WavePlatform(), None, clock, seed=1)
-    begin = machine.begin
 
-    def begin_both(origin_s: float) -> None:
-        begin(origin_s)
+    def act_beside(origin_s: float) -> None:
         threading.Thread(target=act, args=(origin_s,), daemon=True).start()
 
-    machine.begin = begin_both
+    at_origin(machine, act_beside)
     recording = record(
         rig,
         rig_text(),

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rig_stand_ins import NoisyExposer, WavePlatform, motion, record_virtually, rig_text
-from test_real_time import start
+from recording_process import start
+from rig_stand_ins import NoisyExposer, WavePlatform, at_origin, motion, record_virtually, rig_text
 
 from cdpr8.clock import RealClock
 from cdpr8.errors import DataError
@@ -138,13 +138,8 @@ def cut_power(rig: Rig, folder: Path, seconds: float, cuts: int) -> tuple[list[f
     disk = Disk(folder / "run")
     clock = RealClock()
     machine = assemble(rig, WavePlatform(3.0), NoisyExposer(), clock, seed=1)
-    begin, origin = machine.begin, []
-
-    def note_origin(origin_s: float) -> None:
-        origin.append(origin_s)
-        begin(origin_s)
-
-    machine.begin = note_origin
+    origin: list[float] = []
+    at_origin(machine, origin.append)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(os, "fsync", disk.fsync)
         record(

@@ -1,14 +1,23 @@
-"""Hours of a bad line on a virtual clock, every value held against the amplifier's own."""
+"""A bad line on a virtual clock, for hours too: no spoiled or late byte becomes a good value."""
 
 from collections import Counter
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import pytest
-from rig_stand_ins import WavePlatform, simulated_line, with_bus
+from rig_stand_ins import (
+    WavePlatform,
+    all_true,
+    record_spoiled,
+    simulated_line,
+    with_bus,
+    without_noise,
+)
 
 from cdpr8.rigfile import Rig
-from cdpr8.runfolder import BAD_TENSION, EventKind
+from cdpr8.runfolder import BAD_TENSION, EventKind, load_run
+from rig.amplifier.frame import BadFrameError
 from rig.bus import Bus
 from rig.intake import Intake
 from rig.scribe import Sample
@@ -16,6 +25,7 @@ from rig.simulated.bus import SimulatedBus
 from rig.simulated.faults import LineFaults
 from rig.streams import BusStream, Span
 from rig.tally import Tally
+from rig.transport import MemoryTransport
 
 FAULTS = ("flip", "drop", "insert")
 PER_BYTE = 1e-4
@@ -153,3 +163,47 @@ def test_a_real_jump_is_confirmed_and_kept(rig: Rig) -> None:
         pass
     assert witness.good == witness.written > 2.0 * 8 * 0.9 * 131
     assert tally.lost == {}
+
+
+@pytest.mark.parametrize("kind", ["flip", "drop", "insert"])
+def test_spoiled_bytes_never_become_good_values(rig: Rig, tmp_path: Path, kind: str) -> None:
+    folder = tmp_path / "run"
+    recording, faults = record_spoiled(rig, folder, 20.0, {kind: 1e-3}, seed=5)
+    run = load_run(folder)
+    assert faults.count[kind] > 80
+    assert all_true(run)
+    counted = sum(recording.stop.lost.get(what, 0) for what in ("bad_frame", "no_answer"))
+    assert counted > 0.5 * faults.count[kind]
+    bad = run.events[run.events["kind"] == "bad_frame"]
+    assert len(bad) == recording.stop.lost.get("bad_frame", 0)
+
+
+def test_a_late_answer_is_not_taken_for_the_next_node(rig: Rig) -> None:
+    _, transport = simulated_line(without_noise(rig))
+    bus = Bus(transport, rig)
+    stations = bus.start()
+    first, second = stations[0], stations[1]
+    late = LateOnce(transport)
+    late_bus = Bus(late, rig)
+    late.armed = True
+    with pytest.raises(BadFrameError, match="nothing came"):
+        late_bus.take(first)
+    assert late_bus.take(second).reading.digits == pytest.approx(second.scaling.digits(9.0), abs=1)
+
+
+class LateOnce:
+    """Holds one answer back until after its deadline."""
+
+    def __init__(self, inner: MemoryTransport) -> None:
+        self._inner = inner
+        self.armed = False
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._inner, name)
+
+    def write(self, data: bytes) -> None:
+        if self.armed:
+            self.armed = False
+            bus = self._inner._far_end
+            bus._answer_free_s = self._inner.clock.monotonic_s() + 0.03
+        self._inner.write(data)

@@ -8,7 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rig_stand_ins import WavePlatform, motion, record_virtually, rig_text, simulated_line, with_bus
+from rig_stand_ins import (
+    WavePlatform,
+    at_origin,
+    motion,
+    record_virtually,
+    rig_text,
+    simulated_line,
+    with_bus,
+)
 
 from cdpr8.clock import RealClock
 from cdpr8.errors import DeviceError
@@ -110,14 +118,12 @@ def test_a_pause_of_two_seconds_is_said_and_no_time_is_invented(rig: Rig, tmp_pa
             time.sleep(2.0)
 
     origin: list[float] = []
-    begin = machine.begin
 
     def note_origin(origin_s: float) -> None:
         origin.append(origin_s)
-        begin(origin_s)
         machine.transport.write = stand_still
 
-    machine.begin = note_origin
+    at_origin(machine, note_origin)
     recording = record(
         rig, rig_text(), tmp_path / "run", excitation=motion(3.2), clock=clock, machine=machine
     )

@@ -3,8 +3,6 @@
 import math
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -12,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from recording_process import start
 from rig_stand_ins import (
     NoisyExposer,
     WavePlatform,
@@ -87,23 +86,6 @@ def test_where_there_are_no_pseudo_terminals_the_bus_is_in_memory(
     )
     assert recording.stop.t_s == pytest.approx(0.6, abs=0.05)
     assert min(recording.stop.samples.values()) > 0.6 * 40
-
-
-def start(folder: Path, duration_s: float) -> "subprocess.Popen[bytes]":
-    """A recording in a process of its own, once its samples are coming."""
-    script = Path(__file__).parent / "recording_process.py"
-    complaints = folder.parent / "stderr.txt"
-    with complaints.open("w") as file:
-        process = subprocess.Popen(
-            [sys.executable, str(script), str(folder), str(duration_s)], stderr=file
-        )
-    deadline = time.monotonic() + 20.0
-    tension = folder / "tension.csv"
-    while not tension.exists() or tension.stat().st_size < 20_000:
-        assert process.poll() is None, complaints.read_text()
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    return process
 
 
 @pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM])

@@ -9,6 +9,7 @@ import pytest
 from rig_stand_ins import (
     NoisyExposer,
     WavePlatform,
+    at_origin,
     motion,
     record_virtually,
     rig_text,
@@ -112,13 +113,7 @@ def test_the_start_record_is_on_disk_before_the_run_begins(rig: Rig, tmp_path: P
     clock = virtual_clock()
     machine = assemble(rig, WavePlatform(), NoisyExposer(), clock)
     seen = []
-    begin = machine.begin
-
-    def look(origin_s: float) -> None:
-        seen.append((tmp_path / "run" / "start.json").read_bytes())
-        begin(origin_s)
-
-    machine.begin = look
+    at_origin(machine, lambda _: seen.append((tmp_path / "run" / "start.json").read_bytes()))
     record(rig, rig_text(), tmp_path / "run", excitation=motion(0.5), clock=clock, machine=machine)
     assert seen == [(tmp_path / "run" / "start.json").read_bytes()]
 
@@ -202,13 +197,7 @@ def test_a_line_that_goes_away_ends_the_run_with_a_stop_record(rig: Rig, tmp_pat
 def test_a_run_stopped_before_its_first_frame_loads(rig: Rig, tmp_path: Path) -> None:
     clock, stop = virtual_clock(), StopRequest()
     machine = assemble(rig, WavePlatform(), NoisyExposer(), clock)
-    begin = machine.begin
-
-    def stop_at_the_origin(origin_s: float) -> None:
-        stop.request()
-        begin(origin_s)
-
-    machine.begin = stop_at_the_origin
+    at_origin(machine, lambda _: stop.request())
     record(
         rig,
         rig_text(),

@@ -9,10 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig_stand_ins import (
     WavePlatform,
-    motion,
+    record_spoiled,
     record_virtually,
-    rig_text,
-    virtual_clock,
     with_bus,
     without_noise,
 )
@@ -23,9 +21,7 @@ from cdpr8.runfolder import TensionStatus, load_run
 from rig.amplifier import BadFrameError, FrameFormat, TextFormat, ValueFormat
 from rig.amplifier.frame import Check
 from rig.amplifier.text_frame import CLAMP, formats_of
-from rig.recorder import Recording, record
-from rig.simulated.faults import LineFaults
-from rig.simulated.rig import assemble
+from rig.recorder import Recording
 from rig.streaming.lock import VALUES_TO_LOCK, FrameLock
 
 WAVE = WavePlatform(3.0, 2.0)
@@ -59,20 +55,7 @@ def streaming(rig: Rig, cof: int, checksum: bool) -> Rig:
 
 def spoiled(rig: Rig, folder: Path, seconds: float, **rates: float) -> Recording:
     """A recording over a line that spoils bytes from its origin on."""
-    faults = LineFaults(np.random.default_rng(3))
-    clock = virtual_clock()
-    machine = assemble(rig, WAVE, None, clock, seed=1, faults=faults)
-    begin = machine.begin
-
-    def spoil_from_now_on(origin_s: float) -> None:
-        for name, rate in rates.items():
-            setattr(faults, name, rate)
-        begin(origin_s)
-
-    machine.begin = spoil_from_now_on
-    recording = record(
-        rig, rig_text(), folder, excitation=motion(seconds), clock=clock, machine=machine
-    )
+    recording, faults = record_spoiled(rig, folder, seconds, rates, platform=WAVE)
     assert sum(faults.count.values()) > 20
     return recording
 

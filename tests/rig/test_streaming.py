@@ -12,7 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig_stand_ins import (
     WavePlatform,
+    at_origin,
     motion,
+    record_spoiled,
     record_virtually,
     rig_text,
     virtual_clock,
@@ -27,7 +29,6 @@ from cdpr8.runfolder import Run, load_run
 from rig.amplifier.frame import Check, FrameFormat
 from rig.machine import Machine, open_machine
 from rig.recorder import Recording, record
-from rig.simulated.faults import LineFaults
 from rig.simulated.rig import assemble
 from rig.streaming.lock import VALUES_TO_LOCK, FrameLock
 from rig.streaming.node_clock import NodeClock
@@ -82,20 +83,8 @@ def test_eight_streams_in_real_time_for_a_minute(rig: Rig, tmp_path: Path) -> No
 
 
 def test_spoiled_bytes_in_a_stream_never_become_good_values(rig: Rig, tmp_path: Path) -> None:
-    faults = LineFaults(np.random.default_rng(3))
-    rig = streaming(rig)
-    clock = virtual_clock()
-    machine = assemble(rig, WavePlatform(), None, clock, seed=1, faults=faults)
-    begin = machine.begin
-
-    def spoil_from_now_on(origin_s: float) -> None:
-        faults.flip = faults.drop = faults.insert = 6e-4
-        begin(origin_s)
-
-    machine.begin = spoil_from_now_on
-    recording = record(
-        rig, rig_text(), tmp_path / "run", excitation=motion(4.0), clock=clock, machine=machine
-    )
+    rates = dict.fromkeys(("flip", "drop", "insert"), 6e-4)
+    recording, faults = record_spoiled(streaming(rig), tmp_path / "run", 4.0, rates)
     assert sum(faults.count.values()) > 150
     run = load_run(tmp_path / "run")
     for cable in range(1, 9):
@@ -230,13 +219,7 @@ def faulty_run(
     machine = assemble(rig, WavePlatform(), None, clock, seed=1)
     machine.ports = tuple(Unpluggable(port) for port in machine.ports)
     machine.transport = machine.ports[0]
-    start = machine.begin
-
-    def begin_both(origin_s: float) -> None:
-        start(origin_s)
-        begin(machine, origin_s)
-
-    machine.begin = begin_both
+    at_origin(machine, lambda origin_s: begin(machine, origin_s))
     recording = record(
         rig, rig_text(), folder, excitation=motion(seconds), clock=clock, machine=machine
     )

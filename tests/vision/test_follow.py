@@ -14,7 +14,7 @@ from cdpr8.terminal import run_app
 from vision.command import app
 from vision.follow import follow_run
 from vision.growing_video import read_growing
-from vision.track import track_run
+from vision.tracked_run import track_run
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from cdpr8.rigfile.intrinsics import load_intrinsics
 from cdpr8.runfolder import FrameFlag
 from vision.board_file import load_board
 from vision.camera_model import CameraModel
-from vision.track import track_video
+from vision.tracked_video import track_video
 
 CHARUCO = (
     '[charuco]\ndictionary = "DICT_6X6_250"\ncolumns = 5\nrows = 7\n'

@@ -8,7 +8,7 @@ from cdpr8.errors import DataError
 from cdpr8.runfolder import POSE_AXES, FrameFlag, load_run
 from cdpr8.runfolder.tables import POSE
 from vision.refine import Refinement
-from vision.track import track_run
+from vision.tracked_run import track_run
 
 
 @pytest.fixture(scope="module")

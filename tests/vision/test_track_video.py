@@ -12,7 +12,7 @@ from vision.board_file import load_board
 from vision.camera_model import CameraModel
 from vision.plate import Plate, Singles
 from vision.tables import VIDEO_POSE
-from vision.track import track_video
+from vision.tracked_video import track_video
 
 SINGLES = Path(__file__).parent / "aruco_single_video.toml"
 IDS = {101, 601, 701, 801, 901, 1001}
@@ -115,7 +115,9 @@ def test_an_uneven_frame_rate_is_kept_and_said(take, camera, plate, tmp_path):
 def test_a_video_without_times_takes_the_rate_it_is_given(video, camera, plate, monkeypatch):
     from cdpr8.runfolder.video import read_video
 
-    monkeypatch.setattr("vision.track.read_video", lambda p: ((i, None) for i, _ in read_video(p)))
+    monkeypatch.setattr(
+        "vision.tracked_video.read_video", lambda p: ((i, None) for i, _ in read_video(p))
+    )
     notes = []
     assert track_video(video, camera, plate, notes=notes)["t_s"].isna().all()
     assert "--fps" in notes[0]

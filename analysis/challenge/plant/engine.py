@@ -84,10 +84,24 @@ def compiled_loop() -> Any:
     move.argtypes, move.restype = [ctypes.c_void_p, ctypes.c_void_p], None
 
     @njit
-    def loop(  # type: ignore[no-untyped-def]
-        model, data, qpos, qvel, applied, cables, states, g, post_of, posts, drive, jump_at,
-        jump, step_s, pose, cell,
-    ):  # fmt: skip
+    def loop(
+        model: int,
+        data: int,
+        qpos: Array,
+        qvel: Array,
+        applied: Array,
+        cables: Array,
+        states: Array,
+        g: Array,
+        post_of: NDArray[np.int64],
+        posts: Array,
+        drive: Array,
+        jump_at: int,
+        jump: Array,
+        step_s: float,
+        pose: Array,
+        cell: Array,
+    ) -> None:
         wrench, attitude = np.zeros(6), np.zeros(3)
         for n in range(len(drive)):
             kick = 1.0

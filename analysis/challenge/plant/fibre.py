@@ -2,8 +2,11 @@
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+
+Array = NDArray[np.float64]
 
 STOP = 20.0
 """Stiffness of the hook's stops over that of the cable."""
@@ -22,7 +25,16 @@ LADDER_RATIO = 3.2
 
 
 @njit(cache=True)
-def pull(p, s, stretch, speed, chord, level, time_s, step_s):  # type: ignore[no-untyped-def]
+def pull(
+    p: Array,
+    s: Array,
+    stretch: float,
+    speed: float,
+    chord: float,
+    level: float,
+    time_s: float,
+    step_s: float,
+) -> float:
     """Tension behind the pulley, N.
 
     Parameters
@@ -46,7 +58,7 @@ def pull(p, s, stretch, speed, chord, level, time_s, step_s):  # type: ignore[no
     if p[at.PLAY] > 0.0:
         stretch -= _hook(p, s, stretch, step_s)
     if p[at.SAG] > 0.0:
-        tension = _hanging(p, stretch, chord, level)
+        tension: float = _hanging(p, stretch, chord, level)
     else:
         tension = p[at.PRETENSION] + p[at.STIFFNESS] * stretch
     if p[at.CUBIC] > 0.0:
@@ -62,7 +74,7 @@ def pull(p, s, stretch, speed, chord, level, time_s, step_s):  # type: ignore[no
 
 
 @njit(cache=True)
-def _lossy(p, s, moved, step_s):  # type: ignore[no-untyped-def]
+def _lossy(p: Array, s: Array, moved: float, step_s: float) -> float:
     """Maxwell branches (dashpot, relaxation, ladder) and Jenkins sliders (Iwan 1966)."""
     stiff = p[at.STIFFNESS]
     force = 0.0
@@ -97,22 +109,24 @@ def _lossy(p, s, moved, step_s):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _branch(force, stiff, tau, moved, step_s):  # type: ignore[no-untyped-def]
+def _branch(force: float, stiff: float, tau: float, moved: float, step_s: float) -> float:
     """A spring in series with a dashpot, exact for a constant speed."""
     ratio = step_s / tau
     left = np.exp(-ratio)
-    return force * left + stiff * moved * (1.0 - left) / ratio
+    held: float = force * left + stiff * moved * (1.0 - left) / ratio
+    return held
 
 
 @njit(cache=True)
-def _hanging(p, stretch, chord, level):  # type: ignore[no-untyped-def]
+def _hanging(p: Array, stretch: float, chord: float, level: float) -> float:
     """Elastic catenary over its chord: s = (2 T/w) sinh(w L / 2 T), solved by Newton's method."""
     weight = p[at.SAG] * p[at.DENSITY] * 9.80665 * level
     stiff = p[at.STIFFNESS]
     if weight <= 0.0:
-        return p[at.PRETENSION] + stiff * stretch
+        straight: float = p[at.PRETENSION] + stiff * stretch
+        return straight
     rest = _arc(p[at.PRETENSION], weight, chord - stretch) - (chord - stretch)
-    tension = max(p[at.PRETENSION] + stiff * stretch, 0.2 * p[at.PRETENSION])
+    tension: float = max(p[at.PRETENSION] + stiff * stretch, 0.2 * p[at.PRETENSION])
     for _ in range(8):
         arc = _arc(tension, weight, chord)
         # Elastic length and shape together give the chord.
@@ -126,18 +140,20 @@ def _hanging(p, stretch, chord, level):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _arc(tension, weight, chord):  # type: ignore[no-untyped-def]
+def _arc(tension: float, weight: float, chord: float) -> float:
     """Length of a catenary of given horizontal pull over its chord, m."""
     half = 0.5 * weight * chord / tension
     if half < 1e-3:
         return chord * (1.0 + half * half / 6.0)
-    return chord * np.sinh(half) / half
+    arc: float = chord * np.sinh(half) / half
+    return arc
 
 
 @njit(cache=True)
-def _hook(p, s, stretch, step_s):  # type: ignore[no-untyped-def]
+def _hook(p: Array, s: Array, stretch: float, step_s: float) -> float:
     """Way of a hook in its gap, m: held by friction, caught by stiff stops, slow by a damper."""
-    stiff, hold, gap, way = p[at.STIFFNESS], p[at.HOLD], p[at.PLAY], s[at.HOOK]
+    stiff, hold, gap = p[at.STIFFNESS], p[at.HOLD], p[at.PLAY]
+    way: float = s[at.HOOK]
     drive = stiff * (stretch - way) - STOP * stiff * _beyond(way, gap)
     if abs(drive) > hold:
         goal = stretch - np.sign(drive) * hold / stiff
@@ -149,20 +165,21 @@ def _hook(p, s, stretch, step_s):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _beyond(way, gap):  # type: ignore[no-untyped-def]
+def _beyond(way: float, gap: float) -> float:
     """By how much the hook presses into a stop, m, with its sign."""
-    return np.sign(way) * max(abs(way) - gap, 0.0)
+    pressed: float = np.sign(way) * max(abs(way) - gap, 0.0)
+    return pressed
 
 
 @njit(cache=True)
-def _rim(p, s, stretch, speed, step_s):  # type: ignore[no-untyped-def]
+def _rim(p: Array, s: Array, stretch: float, speed: float, step_s: float) -> float:
     """A rim of its own mass, dragged by the cable through a stiff, lossy contact."""
     turn = 2.0 * np.pi * RIM_HZ
     mass = p[at.RIM]
     way, rate = s[at.WHEEL], s[at.WHEEL + 1]
     if s[at.STARTED] <= 0.0:
         way, rate = stretch, speed
-    force = mass * (turn * turn * (stretch - way) + 2.0 * RIM_LOSS * turn * (speed - rate))
+    force: float = mass * (turn * turn * (stretch - way) + 2.0 * RIM_LOSS * turn * (speed - rate))
     rate += force / mass * step_s
     s[at.WHEEL], s[at.WHEEL + 1] = way + rate * step_s, rate
     return force

@@ -7,6 +7,7 @@ after a change to the laws in `fibre`, `friction`, `loads`, `pulley` or `strings
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
 from analysis.challenge.plant.fibre import pull
@@ -15,9 +16,11 @@ from analysis.challenge.plant.loads import loads
 from analysis.challenge.plant.pulley import straight, wrapped
 from analysis.challenge.plant.strings import extension, vibrate
 
+Array = NDArray[np.float64]
+
 
 @njit(cache=True)
-def rotation(quaternion):  # type: ignore[no-untyped-def]
+def rotation(quaternion: Array) -> Array:
     """Rotation matrix of a unit quaternion (w, x, y, z), from the platform frame to O-XYZ."""
     w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
     turn = np.empty((3, 3))
@@ -30,9 +33,21 @@ def rotation(quaternion):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def push(  # type: ignore[no-untyped-def]
-    cables, states, g, post_of, posts, qpos, qvel, time_s, step_s, kick, wrench, cell, attitude
-):
+def push(
+    cables: Array,
+    states: Array,
+    g: Array,
+    post_of: NDArray[np.int64],
+    posts: Array,
+    qpos: Array,
+    qvel: Array,
+    time_s: float,
+    step_s: float,
+    kick: float,
+    wrench: Array,
+    cell: Array,
+    attitude: Array,
+) -> None:
     """Force and moment on the platform; states of cables and frame move on by one step.
 
     Parameters
@@ -102,7 +117,7 @@ def push(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _frame(g, posts, force, step_s):  # type: ignore[no-untyped-def]
+def _frame(g: Array, posts: Array, force: Array, step_s: float) -> None:
     """Each post is a mass on a spring in each direction: m b'' = F - b/C - loss."""
     circular = 2.0 * np.pi * g[at.FRAME_HZ]
     mass = 1.0 / (g[at.FRAME_GIVE] * circular * circular)

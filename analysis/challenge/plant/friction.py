@@ -5,15 +5,18 @@ Canudas de Wit, Olsson, Astrom & Lischinsky, IEEE Trans. Autom. Control 40 (1995
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+
+Array = NDArray[np.float64]
 
 BRISTLE_LOSS_S = 1e-3
 """sigma_1 / sigma_0: how long a bristle takes to come to rest, s."""
 
 
 @njit(cache=True)
-def friction(p, s, speed, tension, step_s):  # type: ignore[no-untyped-def]
+def friction(p: Array, s: Array, speed: float, tension: float, step_s: float) -> float:
     """Force of both kinds of bristles, N; positive where the cable lengthens.
 
     Parameters
@@ -36,7 +39,7 @@ def friction(p, s, speed, tension, step_s):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _bristles(p, s, speed, step_s):  # type: ignore[no-untyped-def]
+def _bristles(p: Array, s: Array, speed: float, step_s: float) -> float:
     """Z' = v - sigma_0 |v| z / g(v), F = sigma_0 z + sigma_1 z', g Stribeck's curve."""
     stiff = p[at.COULOMB] / p[at.BRISTLE]
     ratio = speed / p[at.STRIBECK]
@@ -47,15 +50,17 @@ def _bristles(p, s, speed, step_s):  # type: ignore[no-untyped-def]
     goal = np.sign(speed) * level / stiff
     new = goal + (bent - goal) * left
     s[at.BENT] = new
-    return stiff * (new + BRISTLE_LOSS_S * (new - bent) / step_s)
+    force: float = stiff * (new + BRISTLE_LOSS_S * (new - bent) / step_s)
+    return force
 
 
 @njit(cache=True)
-def _wrapped(p, s, speed, tension, step_s):  # type: ignore[no-untyped-def]
+def _wrapped(p: Array, s: Array, speed: float, tension: float, step_s: float) -> float:
     """T (exp(mu theta z) - 1): Euler and Eytelwein, mobilised by bristles, |z| <= 1."""
     bent = s[at.BENT_CAPSTAN]
     left = np.exp(-np.abs(speed) * step_s / p[at.CAPSTAN_BRISTLE])
     goal = np.sign(speed)
     new = goal + (bent - goal) * left
     s[at.BENT_CAPSTAN] = new
-    return tension * (np.exp(p[at.CAPSTAN] * new) - 1.0)
+    force: float = tension * (np.exp(p[at.CAPSTAN] * new) - 1.0)
+    return force

@@ -2,12 +2,23 @@
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
 
+Array = NDArray[np.float64]
+
 
 @njit(cache=True)
-def loads(g, place, turn, velocity, omega, attitude, wrench):  # type: ignore[no-untyped-def]
+def loads(
+    g: Array,
+    place: Array,
+    turn: Array,
+    velocity: Array,
+    omega: Array,
+    attitude: Array,
+    wrench: Array,
+) -> None:
     """Add force and moment about the centre of mass, N and N m.
 
     Parameters
@@ -40,7 +51,7 @@ def loads(g, place, turn, velocity, omega, attitude, wrench):  # type: ignore[no
 
 
 @njit(cache=True)
-def _air(g, turn, velocity, omega, wrench):  # type: ignore[no-untyped-def]
+def _air(g: Array, turn: Array, velocity: Array, omega: Array, wrench: Array) -> None:
     """Each face of a box by the speed across it, in the platform frame; turning by its size."""
     spin = np.sqrt(omega[0] ** 2 + omega[1] ** 2 + omega[2] ** 2)
     for face in range(3):

@@ -2,10 +2,13 @@
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 
 @njit(cache=True)
-def straight(start, end):  # type: ignore[no-untyped-def]
+def straight(start: Array, end: Array) -> tuple[float, float, float, float]:
     """Length from anchor `start` to base `end`, m, and the unit vector."""
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     length = np.sqrt(x * x + y * y + z * z)
@@ -13,7 +16,7 @@ def straight(start, end):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def wrapped(start, end, radius):  # type: ignore[no-untyped-def]
+def wrapped(start: Array, end: Array, radius: float) -> tuple[float, float, float, float]:
     """Wheel that swivels about the vertical through `end`, where the cable comes up from below.
 
     The cable goes over the top of the wheel, whose centre stands one radius towards the platform,

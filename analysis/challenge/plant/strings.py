@@ -2,8 +2,11 @@
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+
+Array = NDArray[np.float64]
 
 PI_SQUARED = np.pi * np.pi
 
@@ -13,18 +16,29 @@ HORIZONTAL = (1, 2, 3, 4)
 
 
 @njit(cache=True)
-def extension(p, s, chord):  # type: ignore[no-untyped-def]
+def extension(p: Array, s: Array, chord: float) -> float:
     """Length that all modes take up, n^2 pi^2 X_n^2 / (4 L) each, m (Eq. 15)."""
     whole = s[at.STRING] * s[at.STRING]
     if p[at.MODES] > 0.0:
         for j in range(at.OVERTONES):
             number = j + 2 if j < len(VERTICAL) else j + 1 - len(VERTICAL)
             whole += p[at.MODES] * (number * s[at.MODE + j]) ** 2
-    return PI_SQUARED * whole / (4.0 * chord)
+    taken_up: float = PI_SQUARED * whole / (4.0 * chord)
+    return taken_up
 
 
 @njit(cache=True)
-def vibrate(p, s, tension, speed, chord, sway, side, kick, step_s):  # type: ignore[no-untyped-def]
+def vibrate(
+    p: Array,
+    s: Array,
+    tension: float,
+    speed: float,
+    chord: float,
+    sway: float,
+    side: float,
+    kick: float,
+    step_s: float,
+) -> None:
     """Move every mode by one step.
 
     Parameters
@@ -60,7 +74,7 @@ def vibrate(p, s, tension, speed, chord, sway, side, kick, step_s):  # type: ign
 
 
 @njit(cache=True)
-def _overtones(p, s, square, sway, side, step_s):  # type: ignore[no-untyped-def]
+def _overtones(p: Array, s: Array, square: float, sway: float, side: float, step_s: float) -> None:
     """A taut string with a moving end, mode by mode; the shape is X_n sin(n pi y / L)."""
     for j in range(at.OVERTONES):
         vertical = j < len(VERTICAL)
