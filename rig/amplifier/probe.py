@@ -55,6 +55,8 @@ def _probe(
     candidates = [FrameFormat.of_output_format(cof, csm, crlf) for crlf in (True, False)]
     # The first answer is taken to its end in silence, which tells the length; the others quickly.
     raws = [_value(dialogue, address, LONGEST_FRAME, SETTLE_S)]
+    if not raws[0]:
+        return [], raws, dialogue.settle()
     raws += [_value(dialogue, address, len(raws[0]), 0.0) for _ in range(VALUES - 1)]
     late = dialogue.settle()
     fitting = [format_ for format_ in candidates if all(_fits(format_, raw) for raw in raws)]

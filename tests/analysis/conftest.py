@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -43,10 +44,16 @@ def rubbing() -> PlatformTrajectory:
     return simulate_platform(load_rig(packaged_rig_path()), EXCITATION, np.full(8, 0.3))
 
 
+@pytest.fixture(scope="session")
+def make_run_in() -> MakeRun:
+    """Write a run into `run` in a folder and load it; keywords are those of `write_run`."""
+    return lambda folder, truth, **options: write_run(folder / "run", truth, **options)
+
+
 @pytest.fixture
-def make_run(tmp_path: Path) -> MakeRun:
-    """Write a run into tmp_path/run and load it; keywords are those of `write_run`."""
-    return lambda truth, **options: write_run(tmp_path / "run", truth, **options)
+def make_run(make_run_in: MakeRun, tmp_path: Path) -> MakeRun:
+    """Write a run into tmp_path/run and load it."""
+    return partial(make_run_in, tmp_path)
 
 
 def write_run(

@@ -1,6 +1,7 @@
 """`analysis compare`: the paper's Section 5 on runs whose truth is known."""
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -8,8 +9,7 @@ import numpy as np
 import pytest
 
 from analysis.command import app
-from analysis.compare import compare
-from analysis.comparison_figures import write_figures
+from analysis.compare import Comparison, compare
 from analysis.comparison_table import as_dictionary, verdict
 from analysis.tracking import poses_of
 from cdpr8.errors import DataError
@@ -21,21 +21,40 @@ from rig.simulated.plant import PlatformTrajectory
 MakeRun = Callable[..., Run]
 
 
-def test_a_machine_like_the_model_differs_by_no_more_than_noise(
-    make_run: MakeRun, frictionless: PlatformTrajectory
-) -> None:
-    run = make_run(frictionless)
-    comparison = compare(run, poses_of(run))
+@pytest.fixture(scope="module")
+def clean(
+    make_run_in: MakeRun,
+    frictionless: PlatformTrajectory,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Run:
+    """Only read."""
+    return make_run_in(tmp_path_factory.mktemp("clean"), frictionless)
+
+
+@pytest.fixture(scope="module")
+def of_clean(clean: Run) -> Comparison:
+    return compare(clean, poses_of(clean))
+
+
+@pytest.fixture(scope="module")
+def of_rubbing(
+    make_run_in: MakeRun, rubbing: PlatformTrajectory, tmp_path_factory: pytest.TempPathFactory
+) -> Comparison:
+    run = make_run_in(tmp_path_factory.mktemp("rubbing"), rubbing)
+    return compare(run, poses_of(run))
+
+
+def test_a_machine_like_the_model_differs_by_no_more_than_noise(of_clean: Comparison) -> None:
+    comparison = of_clean
     assert [q.measured.name for q in comparison.quantities if q.exceeds_noise] == []
     assert verdict(comparison).startswith("No difference exceeds")
     assert all(q.relative_error < 0.01 for q in comparison.quantities)
 
 
 def test_friction_is_a_difference_beyond_noise(
-    make_run: MakeRun, rubbing: PlatformTrajectory
+    of_rubbing: Comparison, rubbing: PlatformTrajectory
 ) -> None:
-    run = make_run(rubbing)
-    comparison = compare(run, poses_of(run))
+    comparison = of_rubbing
     assert comparison.angle.exceeds_noise
     truth = np.abs(np.rad2deg(rubbing.pose[:, 4])).max()
     assert comparison.angle.measured_amplitude == pytest.approx(truth, abs=0.02)
@@ -44,12 +63,10 @@ def test_friction_is_a_difference_beyond_noise(
     )
 
 
-def test_noise_is_taken_from_rest(make_run: MakeRun, frictionless: PlatformTrajectory) -> None:
-    run = make_run(frictionless)
-    comparison = compare(run, poses_of(run))
-    assert comparison.angle.measured.noise_known
-    assert comparison.angle.measured.noise == pytest.approx(0.004, rel=0.5)
-    assert comparison.tensions[3].measured.noise == pytest.approx(0.005, rel=0.25)
+def test_noise_is_taken_from_rest(of_clean: Comparison) -> None:
+    assert of_clean.angle.measured.noise_known
+    assert of_clean.angle.measured.noise == pytest.approx(0.004, rel=0.5)
+    assert of_clean.tensions[3].measured.noise == pytest.approx(0.005, rel=0.25)
 
 
 def test_an_unknown_start_is_found(make_run: MakeRun, frictionless: PlatformTrajectory) -> None:
@@ -99,10 +116,7 @@ def test_a_run_without_pose_and_video_says_so(
         poses_of(run)
 
 
-def test_stiffness_from_the_same_run_is_warned_about(
-    make_run: MakeRun, frictionless: PlatformTrajectory
-) -> None:
-    run = make_run(frictionless)
+def test_stiffness_from_the_same_run_is_warned_about(clean: Run) -> None:
     rig = load_rig()
     fitted = rig.cable[2].stiffness_n_per_m.model_copy(
         update={"source": "analysis stiffness test-7"}
@@ -110,15 +124,12 @@ def test_stiffness_from_the_same_run_is_warned_about(
     cables = list(rig.cable)
     cables[2] = cables[2].model_copy(update={"stiffness_n_per_m": fitted})
     changed = rig.model_copy(update={"cable": tuple(cables)})
-    warnings = compare(run, poses_of(run), changed).warnings
+    warnings = compare(clean, poses_of(clean), changed).warnings
     assert any("cable 3 was fitted to this same run" in warning for warning in warnings)
 
 
-def test_another_rig_moves_the_plant_and_not_the_drive(
-    make_run: MakeRun, frictionless: PlatformTrajectory
-) -> None:
-    run = make_run(frictionless)
-    stiffer = run.rig.model_copy(
+def test_another_rig_moves_the_plant_and_not_the_drive(clean: Run, of_clean: Comparison) -> None:
+    stiffer = clean.rig.model_copy(
         update={
             "cable": tuple(
                 cable.model_copy(
@@ -128,37 +139,35 @@ def test_another_rig_moves_the_plant_and_not_the_drive(
                         )
                     }
                 )
-                for cable in run.rig.cable
+                for cable in clean.rig.cable
             )
         }
     )
-    comparison = compare(run, poses_of(run), stiffer)
-    own = compare(run, poses_of(run))
+    comparison = compare(clean, poses_of(clean), stiffer)
     # A drive made anew for the stiffer plant would bring the same amplitude back.
-    ratio = comparison.angle.simulated_sine.amplitude / own.angle.simulated_sine.amplitude
+    ratio = comparison.angle.simulated_sine.amplitude / of_clean.angle.simulated_sine.amplitude
     assert ratio == pytest.approx(1 / 1.1, rel=0.03)
 
 
 def test_the_command_writes_json_and_figures(
-    make_run: MakeRun,
-    tmp_path: Path,
-    frictionless: PlatformTrajectory,
-    capsys: pytest.CaptureFixture[str],
+    clean: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    make_run(frictionless)
+    shutil.copytree(clean.folder, tmp_path / "run")
     assert run_app(app, ["compare", str(tmp_path / "run"), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     written = json.loads((tmp_path / "run" / "results" / "compare.json").read_text())
     assert told == written
     assert set(told["tension"]) == {str(c) for c in range(1, 9)}
-    figures = sorted(path.name for path in (tmp_path / "run" / "results").glob("*.svg"))
-    assert figures == [
-        "compare_all.svg",
-        "compare_pitch.svg",
-        "compare_spectra.svg",
-        "compare_tension_1.svg",
-        "compare_tension_7.svg",
-    ]
+    for ending in ("svg", "png"):
+        figures = sorted((tmp_path / "run" / "results").glob(f"*.{ending}"))
+        assert [path.stem for path in figures] == [
+            "compare_all",
+            "compare_pitch",
+            "compare_spectra",
+            "compare_tension_1",
+            "compare_tension_7",
+        ]
+        assert all(path.stat().st_size > 5000 for path in figures)
 
 
 def test_a_missing_run_is_bad_data(capsys: pytest.CaptureFixture[str]) -> None:
@@ -166,13 +175,8 @@ def test_a_missing_run_is_bad_data(capsys: pytest.CaptureFixture[str]) -> None:
     assert "no run 'no_such_run'" in capsys.readouterr().err
 
 
-def test_figures_and_dictionary_agree(
-    make_run: MakeRun, tmp_path: Path, rubbing: PlatformTrajectory
-) -> None:
-    run = make_run(rubbing)
-    comparison = compare(run, poses_of(run))
-    dictionary = as_dictionary(comparison)
+def test_the_dictionary_says_what_the_comparison_says(of_rubbing: Comparison) -> None:
+    dictionary = as_dictionary(of_rubbing)
     assert dictionary["angle"]["relative_error_percent"] == pytest.approx(
-        100 * comparison.angle.relative_error
+        100 * of_rubbing.angle.relative_error
     )
-    assert all(path.stat().st_size > 5000 for path in write_figures(comparison, tmp_path / "out"))

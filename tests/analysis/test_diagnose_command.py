@@ -1,6 +1,7 @@
 """`analysis diagnose` and `analysis report` at the command line."""
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from analysis.command import app
 from analysis.diagnosis.results import write
 from analysis.diagnosis.schema import statement_schema
 from cdpr8.rigfile import Excitation, load_rig, packaged_rig_path
-from cdpr8.runfolder import Run
+from cdpr8.runfolder import Run, load_run
 from cdpr8.terminal import run_app
 from rig.simulated.plant import simulate_platform
 
@@ -24,10 +25,16 @@ SHORT = Excitation(motion_s=3.5, rest_s=0.5)
 Printed = Callable[[], tuple[str, str]]
 
 
-@pytest.fixture
-def rubbing_run(make_run: MakeRun) -> Run:
+@pytest.fixture(scope="module")
+def recorded(make_run_in: MakeRun, tmp_path_factory: pytest.TempPathFactory) -> Path:
     truth = simulate_platform(load_rig(packaged_rig_path()), SHORT, np.full(8, 0.3))
-    return make_run(truth, excitation=SHORT)
+    return make_run_in(tmp_path_factory.mktemp("recorded"), truth, excitation=SHORT).folder
+
+
+@pytest.fixture
+def rubbing_run(recorded: Path, tmp_path: Path) -> Run:
+    """A copy, into which results may be written."""
+    return load_run(shutil.copytree(recorded, tmp_path / "run"))
 
 
 @pytest.mark.parametrize(

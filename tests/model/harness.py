@@ -1,5 +1,7 @@
 """The laws of one effect under a prescribed motion of its cable or platform."""
 
+import math
+from functools import cache
 from inspect import signature
 
 import numpy as np
@@ -29,8 +31,13 @@ class Response:
         return float(self.size[harmonic] / self.size[1])
 
 
+@cache
+def arguments(law) -> tuple[str, ...]:
+    return tuple(signature(law).parameters)
+
+
 def call(law, known: dict):
-    return law(**{name: known[name] for name in signature(law).parameters})
+    return law(**{name: known[name] for name in arguments(law)})
 
 
 def cable_response(
@@ -49,14 +56,13 @@ def cable_response(
     state = np.zeros(len(names))
     dt = 1.0 / (frequency_hz * STEPS)
     force, rate = np.zeros((2, STEPS))
+    along, across = (0.6, 0.0, 0.8), (-0.8, 0.0, 0.6)
 
     def known(time_s: float, state: np.ndarray) -> dict:
-        x = amplitude_m * np.sin(circular * time_s)
-        v = amplitude_m * circular * np.cos(circular * time_s)
+        x = amplitude_m * math.sin(circular * time_s)
+        v = amplitude_m * circular * math.cos(circular * time_s)
         elastic = max(pretension + STIFFNESS * x, 0.0)
-        along = np.array([0.6, 0.0, 0.8])
-        across = np.array([-0.8, 0.0, 0.6]) * v
-        anchor = across - along * v
+        anchor = [(side - line) * v for side, line in zip(across, along, strict=True)]
         base = {
             "length": 2.0 + x,
             "rest_length": 2.0,

@@ -137,6 +137,15 @@ def test_values_that_fit_no_format_are_refused() -> None:
         probe_format(Dialogue(script), 1, 24, 0)
 
 
+def test_a_probe_whose_first_answer_stays_away_is_made_again() -> None:
+    # Values of no length are not asked for: a serial port that gives none seems to be gone.
+    silence = [(b";", b""), (b"S01;", b""), (b";", b"")]
+    values = [(b";", b""), *[(b"S01;", b"\x00\x27\x10\x00\r\n")] * 16, (b";", b"")]
+    script = Conversation(silence + values)
+    assert probe_format(Dialogue(script), 1, 24, 0).crlf
+    assert script.over
+
+
 class Told:
     """A simulated node and a line to it, for one-off questions."""
 

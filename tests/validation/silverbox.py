@@ -44,7 +44,7 @@ def between(hold: Hold) -> Array:
     return np.repeat(u, fine) if hold == "zero-order" else np.asarray(resample(u, fine * len(u)))
 
 
-@numba.njit
+@numba.njit(cache=True)
 def acceleration(y, v, u, p):  # type: ignore[no-untyped-def]
     """Of the output [V/s^2]; p as `Silverbox.predict` has it."""
     force = p[2] * (u + p[3] + p[11] * u * u * u)
@@ -53,7 +53,7 @@ def acceleration(y, v, u, p):  # type: ignore[no-untyped-def]
     return force - spring - damper - p[9] * np.tanh(v / p[10])
 
 
-@numba.njit
+@numba.njit(cache=True)
 def run(u, h, p):  # type: ignore[no-untyped-def]
     """Output and its rate at each step from rest, shape (steps, 2)."""
     count = (len(u) - 1) // 2

@@ -42,14 +42,14 @@ def repeated(y: Array) -> Array:
     return np.asarray(np.diff(y, prepend=np.nan) == 0.0, dtype=float)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def outflow(x, rate, root, loss):  # type: ignore[no-untyped-def]
     """Of a tank [V/s]."""
     full = max(x, 0.0)
     return rate * (np.sqrt(REFERENCE_V * full) if root else full) + loss * x
 
 
-@numba.njit
+@numba.njit(cache=True)
 def run(u, x1, x2, p):  # type: ignore[no-untyped-def]
     """Level of the lower tank at each sample [V]; p as `Tanks.predict` has it."""
     h = PERIOD_S / STEPS
