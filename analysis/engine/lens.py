@@ -39,6 +39,10 @@ NEAR = 0.15
 SOUGHT = 0.05
 """A ring is sought this near a tone, as a share of it."""
 
+RING_SPACING, RING_SHARE = 0.7, 0.25
+"""Rings at the tones nearest a drive are left out of its lines: vectors so far apart, in lines of
+the stretch, and no more of them than this share of its samples."""
+
 ALIASED = 0.03
 """The same where a tone is seen at another frequency, being faster than it is sampled."""
 
@@ -156,7 +160,8 @@ class Lens:
                     kept, bands = list(range(inside.size)), _bands(inside.size)
                 else:
                     vectors, lines = _vectors(bundle.t_s[inside], segment)
-                    basis, kept = _orthonormal(vectors)
+                    rings = _rings_near(bundle.t_s[inside], segment, bundle)
+                    basis, kept = _orthonormal(vectors, rings)
                 self._parts.append(_Part(b, inside, basis, whiten))
                 if basis is None or segment.fundamental_hz is None:
                     rung.append(np.zeros(len(kept) * len(bundle.names)))
@@ -372,8 +377,33 @@ def _vectors(t_s: Array, segment: Segment) -> tuple[Array, list[tuple[float, int
     return np.stack(columns, axis=1), lines
 
 
-def _orthonormal(vectors: Array) -> tuple[Array, list[int]]:
-    """An orthonormal set in the order of the vectors; those within the span of others are left."""
+def _rings_near(t_s: Array, segment: Segment, bundle: Bundle) -> Array:
+    """Vectors of rings at the tones nearest a drive, which no damping ends soon, shape (n, k)."""
+    drive_hz = segment.fundamental_hz
+    columns: list[Array] = []
+    if drive_hz is None:
+        return np.zeros((len(t_s), 0))
+    step_hz = RING_SPACING / (segment.end_s - segment.start_s)
+    for tone in sorted(bundle.tones_hz, key=lambda one: abs(one - drive_hz)):
+        count = int(np.ceil(SOUGHT * tone / step_hz))
+        if len(columns) + 4 * count + 2 > RING_SHARE * len(t_s):
+            break
+        if abs(tone - drive_hz) < RESONANT * drive_hz:
+            continue
+        for hertz in tone + step_hz * np.arange(-count, count + 1):
+            columns += [np.cos(2.0 * np.pi * hertz * t_s), np.sin(2.0 * np.pi * hertz * t_s)]
+    return np.stack(columns, axis=1) if columns else np.zeros((len(t_s), 0))
+
+
+def _orthonormal(vectors: Array, without: Array) -> tuple[Array, list[int]]:
+    """An orthonormal set in the order of the vectors, and orthogonal to those without.
+
+    Vectors within the span of others are left out.
+    """
+    if without.shape[1]:
+        left, sizes, _ = np.linalg.svd(without, full_matrices=False)
+        left = left[:, sizes > np.sqrt(CAPTURED) * sizes[0]]
+        vectors = vectors - left @ (left.T @ vectors)
     scaled = vectors / np.maximum(np.linalg.norm(vectors, axis=0), 1e-300)
     q, r = np.linalg.qr(scaled)
     own = np.abs(np.diag(r)) > np.sqrt(CAPTURED)
