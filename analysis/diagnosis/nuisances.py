@@ -27,7 +27,7 @@ CLOCK_PPM = 30.0
 SAMPLE_S = 2e-4
 """How well a cell's sampling instants are known."""
 
-SEEN_TURN = 2e-3
+SEEN_TURN = 2e-4
 """Base points known better than this share of their distance are taken as they are."""
 
 CELL_SHARE = 1e-3

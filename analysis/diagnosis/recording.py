@@ -41,7 +41,7 @@ HELD_SHARE = 0.3
 LEAST_PERIODS = 6
 """Fewer steady periods than this are not split."""
 
-BASE_SHARE = 3e-4
+BASE_SHARE = 1e-4
 """What two good simulators of the same equations differ by, as a share of the variation."""
 
 _DEGREES = np.array([1.0, 1.0, 1.0, *[np.pi / 180.0] * 3])

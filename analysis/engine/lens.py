@@ -43,6 +43,9 @@ RING_SPACING, RING_SHARE = 0.7, 0.25
 """Rings at the tones nearest a drive are left out of its lines: vectors so far apart, in lines of
 the stretch, and no more of them than this share of its samples."""
 
+UNSTEADY = 0.03
+"""No ring is quite steady: this share of it is seen as a slow change of other lines."""
+
 ALIASED = 0.03
 """The same where a tone is seen at another frequency, being faster than it is sampled."""
 
@@ -317,6 +320,7 @@ def leaked(
         for c, place in enumerate(loudest):
             amplitude = max(float(power[place, c]) - noise, 0.0)
             found[c] += 0.5 * amplitude * np.abs(turns[place] @ basis) ** 2
+            found[c, ~steady] += 0.5 * amplitude * len(t_s) * UNSTEADY**2
     return found.reshape(-1)
 
 
