@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.lens import RESONANT, resonant
 from analysis.engine.system import Bundle, Segment
 from analysis.series import measured_cables
 from cdpr8.errors import DataError
@@ -111,6 +112,13 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
         bundles.append(seen)
     else:
         notes.append("no pose: cameras and clocks cannot be told from what the platform does")
+    near = [tone for tone in bundles[0].tones_hz if resonant(tone, excitation.frequency_hz)]
+    if near and excitation.amplitude_deg > 0.0:
+        notes.append(
+            f"the drive at {excitation.frequency_hz:g} Hz is within {100.0 * RESONANT:.0f} % of a "
+            f"tone of the platform, {near[0]:.1f} Hz: only averages and what it does at rest can "
+            "be foretold; drive it slower or faster"
+        )
     lost = [str(c) for c in range(1, len(run.rig.cable) + 1) if c not in cables]
     if lost:
         notes.append(f"no usable tension of cable {', '.join(lost)}")

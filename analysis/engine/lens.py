@@ -52,7 +52,7 @@ ALIASED = 0.03
 WIDTH = 1.5
 """And lines this near, in lines of a stretch that does not repeat."""
 
-RESONANT = 0.15
+RESONANT = 0.2
 """A drive this near a tone, as a share of itself, leaves nothing but means to be foretold."""
 
 BAND = 0.05
@@ -258,15 +258,18 @@ class Lens:
         return self([bundle.value for bundle in self.bundles])
 
 
+def resonant(tone_hz: float, drive_hz: float) -> bool:
+    """Whether a drive is so near a tone that nothing but means can be foretold."""
+    return abs(tone_hz - drive_hz) < RESONANT * drive_hz
+
+
 def _rings(line_hz: float, order: int, segment: Segment, bundle: Bundle) -> bool:
     """Whether a line may be the system's own ring."""
     drive_hz = _drive_hz(bundle)
     length_s = segment.end_s - segment.start_s
     # Over a short stretch a ring is as wide as the stretch is short.
     wide_hz = WIDTH / length_s if segment.fundamental_hz is None else 0.0
-    if line_hz > 0.0 and any(
-        abs(tone - drive_hz) < RESONANT * drive_hz for tone in bundle.tones_hz
-    ):
+    if line_hz > 0.0 and any(resonant(tone, drive_hz) for tone in bundle.tones_hz):
         return True
     above = [tone for tone in bundle.tones_hz if tone > FAR_ABOVE * drive_hz]
     if above and line_hz >= min(above) - max(NEAR * min(above), wide_hz):
@@ -392,7 +395,7 @@ def _rings_near(t_s: Array, segment: Segment, bundle: Bundle) -> Array:
         count = int(np.ceil(SOUGHT * tone / step_hz))
         if len(columns) + 4 * count + 2 > RING_SHARE * len(t_s):
             break
-        if abs(tone - drive_hz) < RESONANT * drive_hz:
+        if resonant(tone, drive_hz):
             continue
         for hertz in tone + step_hz * np.arange(-count, count + 1):
             columns += [np.cos(2.0 * np.pi * hertz * t_s), np.sin(2.0 * np.pi * hertz * t_s)]
