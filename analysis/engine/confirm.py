@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.refine import Fitted
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import Search
 from analysis.engine.system import Array, Bundle, Point, Ring, System
 
@@ -52,19 +53,21 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     records = list(dict.fromkeys(bundle.record for bundle in bundles))
     sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
     held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
-    used = _used(search, held)
-    again = search.refiner.settle(search.refiner.again(chosen, used))
-    return Confirmation(
-        before=_errors(search.system, Point(search.calibrated.at), held),
-        after=_errors(search.system, again.point, held),
-        held_record=held,
-    )
+    before = _errors(search.system, Point(search.calibrated.at), held)
+    after = before
+    if chosen.hypothesis.parts:
+        again = search.refiner.settle(search.refiner.again(chosen, _used(search, held)))
+        after = _errors(search.system, again.point, held)
+    return Confirmation(before, after, held)
 
 
 def _errors(system: System, point: Point, held: str) -> dict[str, dict[str, float]]:
-    """With the system's own ring or without it, whichever fits the used part better."""
-    rung = (sample_errors(system, replace(point, ring=ring), held) for ring in RINGS)
-    return min(rung, key=lambda found: sum(one**2 for one in found["used"].values()))
+    """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
+    tried = [replace(point, ring=ring) for ring in RINGS]
+    if any(bundle.tones_hz for bundle in system.bundles):
+        tried.append(follow_ring(system, point, held))
+    found = (sample_errors(system, one, held) for one in tried)
+    return min(found, key=lambda errors: sum(one**2 for one in errors["used"].values()))
 
 
 def _used(search: Search, held: str) -> NDArray[np.bool_]:
