@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.refine import Fitted
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import Followed, follow_ring
 from analysis.engine.search import Search
+from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Ring, System
 
 RINGS: tuple[Ring, ...] = ("left_out", "as_is")
@@ -53,19 +54,24 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     records = list(dict.fromkeys(bundle.record for bundle in bundles))
     sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
     held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
-    before = _errors(search.system, Point(search.calibrated.at), held)
+    before = _errors(search.system, search.calibrated.at, None, held)
     after = before
     if chosen.hypothesis.parts:
-        again = search.refiner.settle(search.refiner.again(chosen, _used(search, held)))
-        after = _errors(search.system, again.point, held)
+        again = chosen
+        if not search.faint:
+            again = search.refiner.settle(search.refiner.again(chosen, _used(search, held)))
+        after = _errors(search.system, again.point.nuisance, again.state, held)
     return Confirmation(before, after, held)
 
 
-def _errors(system: System, point: Point, held: str) -> dict[str, dict[str, float]]:
+def _errors(
+    system: System, nuisance: Array, state: State | None, held: str
+) -> dict[str, dict[str, float]]:
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
-    tried = [replace(point, ring=ring) for ring in RINGS]
+    start = Followed(nuisance, state)
+    tried = [replace(start.point, ring=ring) for ring in RINGS]
     if any(bundle.tones_hz for bundle in system.bundles):
-        tried.append(follow_ring(system, point, held))
+        tried.append(follow_ring(system, nuisance, state, held=held).point)
     found = (sample_errors(system, one, held) for one in tried)
     return min(found, key=lambda errors: sum(one**2 for one in errors["used"].values()))
 

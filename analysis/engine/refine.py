@@ -172,6 +172,20 @@ class Refiner:
         """
         return self._improve(fitted.state, fitted.problem.at, used & self._problem.used, ROUNDS)
 
+    def at(self, state: State, nuisance: Array) -> Fitted:
+        """A hypothesis where it stands, without moving it.
+
+        Parameters
+        ----------
+        state, nuisance
+            Its free numbers and the directions of the nuisances.
+        """
+        return self._at(state, nuisance, self._problem.used)
+
+    def directions_of(self, nuisance: Array) -> Array:
+        """Nuisances in the directions that can be seen, shape (p,)."""
+        return np.asarray(self._rotation.T @ nuisance)
+
     def settle(self, fitted: Fitted, *, anew: bool = False) -> Fitted:
         """The same hypothesis with its nuisances where they are likeliest.
 

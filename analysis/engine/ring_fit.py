@@ -1,21 +1,25 @@
 """The ring itself: parameters moved until a simulation rings in the recording's own phase.
 
-Naming leaves rings out, for their phase is lost where parameters are a little off. Once a cause is
-chosen, the parameters are near enough to be led to it: over a short stretch first, in which no
-phase is far off, and then over longer ones.
+Naming what is strong leaves rings out, for their phase is lost where parameters are a little off.
+Where what is left is small, parameters can be led to the phase: over a short stretch first, in
+which none is far off, and then over longer ones.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.sensitivity import BATCH
+from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Prediction, System
 
 WINDOWS = (0.25, 0.4, 0.7, 1.0)
-"""Shares of the used time over which the ring is followed, one after the other."""
+"""Shares of the time over which the ring is followed, one after the other."""
+
+WINDOWS_OF_MANY = (0.4, 1.0)
+"""The same for several recordings, which know the parameters better."""
 
 STEP = 0.02
 """Of the difference that tells what a parameter does, in sigmas: longer ones turn the phase."""
@@ -26,79 +30,162 @@ SHORTER, SHORTEST = 0.4, 3
 LOST = 30.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
 
+FASTEST_HZ = 80.0
+"""Faster samples are averaged in blocks down to about this."""
+
 Mask = list[NDArray[np.bool_]]
 
 
-def follow_ring(system: System, point: Point, held: str = "") -> Point:
-    """The same point with its nuisances where the simulation, ring and all, fits best.
+@dataclass(frozen=True)
+class Followed:
+    """Where following the ring has led to.
+
+    Attributes
+    ----------
+    nuisance
+        In sigmas, shape (p,).
+    state
+        The free numbers of what is on; None: nothing is.
+    """
+
+    nuisance: Array
+    state: State | None
+
+    @property
+    def point(self) -> Point:
+        """What is to be simulated, ring and all."""
+        if self.state is None:
+            return Point(self.nuisance, ring="as_is")
+        return replace(self.state.point(self.nuisance), ring="as_is")
+
+    def moved(self, change: Array, share: float) -> "Followed":
+        """A share of a step further."""
+        count = len(self.nuisance)
+        state = self.state
+        if state is not None:
+            state = state.moved(change[count:], share)
+        return Followed(self.nuisance + share * change[:count], state)
+
+    def neighbours(self) -> tuple[list[Point], Array]:
+        """A point for each free number, moved a little, and by how much, shape (numbers,)."""
+        points, steps = [], []
+        for i in range(len(self.nuisance)):
+            nuisance = self.nuisance.copy()
+            nuisance[i] += STEP
+            points.append(replace(self, nuisance=nuisance).point)
+            steps.append(STEP)
+        if self.state is not None:
+            for k in range(len(self.state.free)):
+                points.append(replace(self, state=self.state.bumped(k)).point)
+                steps.append(self.state.signed_step(k))
+        return points, np.array(steps)
+
+
+def follow_ring(
+    system: System,
+    nuisance: Array,
+    state: State | None = None,
+    *,
+    held: str = "",
+    everything: bool = False,
+) -> Followed:
+    """Free numbers at which the simulation, ring and all, fits best.
 
     Parameters
     ----------
-    system, point
-        What is simulated, and from where.
+    system
+        What is simulated.
+    nuisance, state
+        From where.
     held
         A recording that is kept back, but for its rest.
-
-    Returns
-    -------
-    Point
-        With `ring` "as_is".
+    everything
+        Use what is kept back, too; what is sealed never is.
     """
-    best = replace(point, ring="as_is")
-    for share in WINDOWS:
-        moved = _step(system, best, [_used(one, share, held) for one in system.bundles])
+    best = Followed(nuisance, state)
+    many = len({bundle.record for bundle in system.bundles}) > 1
+    for share in WINDOWS_OF_MANY if many else WINDOWS:
+        mask = [seen(one, share=share, held=held, everything=everything) for one in system.bundles]
+        moved = _step(system, best, mask)
         if moved is None:
             break
         best = moved
     return best
 
 
-def _step(system: System, start: Point, mask: Mask) -> Point | None:
+def _step(system: System, start: Followed, mask: Mask) -> Followed | None:
     """One Gauss-Newton step over the samples of a mask; None where it leads nowhere."""
 
     def residual(prediction: Prediction) -> Array:
-        return _residual(system.bundles, prediction, mask)
+        return residuals(system.bundles, prediction, mask)
 
     at = start.nuisance
-    (here,) = system.simulate([start], residual)
+    (here,) = system.simulate([start.point], residual)
     if float(here @ here) > LOST * len(here):
         return None
-    points = []
-    for i in range(len(at)):
-        moved = at.copy()
-        moved[i] += STEP
-        points.append(replace(start, nuisance=moved))
+    points, steps = start.neighbours()
     rows: list[Array] = []
     for first in range(0, len(points), BATCH):
         rows += system.simulate(points[first : first + BATCH], residual)
-    columns = (here[None, :] - np.stack(rows)) / STEP
-    target = np.linalg.solve(np.eye(len(at)) + columns @ columns.T, columns @ here - at)
+    columns = (here[None, :] - np.stack(rows)) / steps[:, None]
+    prior = np.concatenate([np.ones(len(at)), np.zeros(len(steps) - len(at))])
+    matrix = columns @ columns.T + np.diag(prior + 1e-9)
+    right = columns @ here
+    right[: len(at)] -= at
+    target = np.linalg.solve(matrix, right)
     share, before = 1.0, float(here @ here + at @ at)
     for _ in range(SHORTEST):
-        there = at + share * target
-        (left,) = system.simulate([replace(start, nuisance=there)], residual)
-        if float(left @ left + there @ there) < before:
-            return replace(start, nuisance=there)
+        there = start.moved(target, share)
+        (left,) = system.simulate([there.point], residual)
+        if float(left @ left + there.nuisance @ there.nuisance) < before:
+            return there
         share *= SHORTER
     return None
 
 
-def _used(bundle: Bundle, share: float, held: str) -> NDArray[np.bool_]:
-    """The samples up to a share of the time that is not kept back."""
+def seen(
+    bundle: Bundle, *, share: float = 1.0, held: str = "", everything: bool = False
+) -> NDArray[np.bool_]:
+    """Which samples count.
+
+    Parameters
+    ----------
+    bundle
+        Of which.
+    share
+        Those up to this share of the time.
+    held
+        A recording that is kept back, but for its rest.
+    everything
+        What is kept back, too; what is sealed never.
+    """
     chosen = np.zeros(len(bundle.t_s), dtype=bool)
     for one in bundle.segments:
-        kept_back = one.held_out or one.sealed or (bundle.record == held and one.name != "rest")
-        if not kept_back:
+        kept_back = one.held_out or (bundle.record == held and one.name != "rest")
+        if not one.sealed and (everything or not kept_back):
             chosen |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
     places = np.flatnonzero(chosen)
     chosen[places[int(np.ceil(share * len(places))) :]] = False
     return chosen
 
 
-def _residual(bundles: Sequence[Bundle], prediction: Prediction, mask: Mask) -> Array:
-    """Residuals of the masked samples in units of their noise, one after the other."""
+def residuals(bundles: Sequence[Bundle], prediction: Prediction, mask: Mask) -> Array:
+    """Residuals of the masked samples in units of their noise, one after the other.
+
+    Parameters
+    ----------
+    bundles, prediction
+        What was recorded, and what is simulated.
+    mask
+        For each bundle, which samples.
+    """
     parts = []
     for bundle, seen, chosen in zip(bundles, prediction, mask, strict=True):
         whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
-        parts.append(((bundle.value[chosen] - seen[chosen]) @ whiten.T).reshape(-1))
+        rest = (bundle.value[chosen] - seen[chosen]) @ whiten.T
+        length_s = bundle.t_s[-1] - bundle.t_s[0]
+        block = max(int(len(bundle.t_s) / (FASTEST_HZ * length_s)), 1)
+        whole = len(rest) // block * block
+        rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
+        parts.append(rest.reshape(-1))
     return np.concatenate(parts)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from analysis.engine.calibrate import Calibrated, calibrate
+from analysis.engine.faint import FAINT, faint, faint_search, followed_each
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Fitted, Refiner
 from analysis.engine.screen import Scored, Screen
@@ -37,6 +38,10 @@ HOPELESS = 60.0
 ASKS = 4.0
 """One candidate more is looked for where screening promises this rise of the score."""
 
+FOLLOWED, MOST_FOLLOWED = 3, 1
+"""Of what the ring promises, and of what is likely without it, so many are led to its phase, where
+there are no more recordings than this: with more it takes minutes, and they tell by themselves."""
+
 PARENTS = 3
 """Hypotheses from which one more is looked for."""
 
@@ -61,6 +66,8 @@ class Search:
         Hypotheses fitted in earnest, the best first; the null among them.
     refiner
         Fits more.
+    faint
+        Whether parameters alone lead to the noise, so that scores are those of the followed ring.
     """
 
     system: System
@@ -72,6 +79,7 @@ class Search:
     null: Fitted
     fitted: tuple[Fitted, ...]
     refiner: Refiner
+    faint: bool = False
 
 
 class Look(NamedTuple):
@@ -125,6 +133,21 @@ def search(
     refiner = Refiner(system, lens, data, calibrated, anew=anew)
     finder = _Finder(refiner, candidates, terms, tell)
     null = refiner.fit(Screen(calibrated.problem, candidates, terms).null())
+
+    def following(done: int, total: int) -> None:
+        if tell is not None:
+            tell("following the ring", done, total)
+
+    about = faint(system, calibrated, following)
+    ringing: list[Fitted] = []
+    if about is not None:
+        screened, fitted = faint_search(about, refiner, candidates)
+        ringing = [one for one in fitted if one.hypothesis.parts][:FOLLOWED]
+    if about is not None and about.left < FAINT:
+        return Search(
+            system, lens, data, calibrated, terms, tuple(screened), null, tuple(fitted), refiner,
+            faint=True,
+        )  # fmt: skip
     singles = finder.screen(null)
     finder.keep(null)
     finder.fit_best(singles, SINGLES, "fitting single causes")
@@ -146,16 +169,18 @@ def search(
         finder.fit_best(found, most, stage)
         if finder.ranked()[0].hypothesis.parts.keys() == parents[0].hypothesis.parts.keys():
             break
+    ranked = finder.ranked()
+    if about is not None and len({one.record for one in system.bundles}) <= MOST_FOLLOWED:
+        likely = [one for one in ranked if one.hypothesis.parts][:FOLLOWED]
+        tried = {one.hypothesis.names: one for one in (*ringing, *likely)}
+        rung = followed_each(about, refiner, list(tried.values()))
+        if rung is not None:
+            return Search(
+                system, lens, data, calibrated, terms, tuple(singles), null, tuple(rung), refiner,
+                faint=True,
+            )  # fmt: skip
     return Search(
-        system,
-        lens,
-        data,
-        calibrated,
-        terms,
-        tuple(singles),
-        null,
-        tuple(finder.ranked()),
-        refiner,
+        system, lens, data, calibrated, terms, tuple(singles), null, tuple(ranked), refiner
     )
 
 
