@@ -257,9 +257,7 @@ class Refiner:
         columns = np.stack(
             [(damped[1 + k] - damped[0]) / state.signed_step(k) for k in range(count)], axis=1
         ) if count else np.zeros((len(features), 0))  # fmt: skip
-        done = {
-            name: damped[0] - row for name, row in zip(names, damped[1 + count :], strict=True)
-        }
+        done = {name: damped[0] - row for name, row in zip(names, damped[1 + count :], strict=True)}
         order = [k for name in names for k in state.places(name)]
         lows, highs = state.bounds()
         residuals, rows = state.shape_rows()
