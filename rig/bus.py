@@ -11,13 +11,19 @@ from rig.amplifier.profile import Identity, profile_of
 from rig.amplifier.scaling import Scaling
 from rig.assignment import amplifiers
 from rig.station import Station, Value, check_identity
-from rig.transport import LineLostError, Transport
+from rig.transport import LineLostError, Received, Transport
 
 STOP_WAIT_S = 0.1
 """Silence after ``;S98;STP;`` (protocol note, section 10)."""
 
 VALUE_MARGIN_S = 0.02
 """How much longer than its bytes a value may take (protocol note, section 10, timeouts)."""
+
+LATE_S = 0.05
+"""How long an answer that was given up may be held up, and those behind it, once they come."""
+
+BAUD_TOLERANCE = 0.05
+"""How much faster than its name a line may be; beyond 5 % it would not be understood."""
 
 JITTER_S = 0.0005
 """How much the way to the node and back may vary, in adapters, without the computer's fault."""
@@ -57,6 +63,7 @@ class Bus:
         self._asked: Station | None = None
         self._asked_s = self._sent_s = 0.0
         self._least_late_s: dict[int, float] = {}
+        self._late_feared = False
 
     def start(self) -> tuple[Station, ...]:
         """Silence the bus, identify, configure and start all amplifiers.
@@ -139,7 +146,9 @@ class Bus:
         node = NodeClient(self._dialogue, station.address)
         try:
             # Selected it is; a node out of bus mode answers questions.
-            answer = self._dialogue.ask(message.query("IDN"), tries=1, margin_s=VALUE_MARGIN_S)
+            answer = self._dialogue.ask(
+                message.query("IDN"), message.is_identity, tries=1, margin_s=VALUE_MARGIN_S
+            )
             if Identity.parse(answer) != station.identity:
                 return False
             if node.configure(self._settings) != station.settings:
@@ -208,13 +217,33 @@ class Bus:
         line, length = transport.line, station.format.length
         deadline_s = request_s + (len(station.request) + length) * line.char_s + VALUE_MARGIN_S
         received = transport.read(length, deadline_s)
+        self._late_feared |= len(received.data) < length
         if received.damaged:
             raise BadFrameError("parity error", received.data)
         reading = station.format.decode(received.data)
         if received.last_byte_s > deadline_s:
             raise BadFrameError("noticed too late to be timed", received.data)
+        self._require_no_other(station, received)
         answer_s = self._answer_s(station, received.last_byte_s - length * line.char_s)
         return Value(reading, request_s, received.last_byte_s, answer_s - station.period_s / 2.0)
+
+    def _require_no_other(self, station: Station, received: Received) -> None:
+        """Refuse an answer that may be to an earlier request.
+
+        An answer that was given up may still come, held up by an adapter or a busy computer, and
+        then stands before that to the next request: from there on each amplifier's value would be
+        taken for the next one's. It comes sooner than the line could have carried question and
+        answer, or another answer comes right behind it.
+        """
+        chars = len(station.request) + len(received.data)
+        took_s = received.last_byte_s - self._asked_s
+        if took_s < (1.0 - BAUD_TOLERANCE) * chars * self.transport.line.char_s:
+            self._late_feared = True
+            raise BadFrameError("it came too soon to be the answer", received.data)
+        if self._late_feared:
+            if behind := self.transport.drain(LATE_S):
+                raise BadFrameError("another answer came behind it", received.data + behind)
+            self._late_feared = False
 
     def _answer_s(self, station: Station, received_s: float) -> float:
         """When an answer began: as its arrival tells, but no later than the request allows.

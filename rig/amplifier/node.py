@@ -79,11 +79,11 @@ class NodeClient:
         # The selection goes out with the question: a lone terminator first, so that nothing
         # half-sent stands before it (section 2).
         request = message.END + message.select(self.address) + message.query("IDN")
-        return Identity.parse(self._dialogue.ask(request, tries=tries))
+        return Identity.parse(self._dialogue.ask(request, message.is_identity, tries=tries))
 
     def read(self, mnemonic: str) -> str:
         """The answer to a query, without its line end; the node must be selected."""
-        answer = self._dialogue.ask(message.query(mnemonic))
+        answer = self._dialogue.ask(message.query(mnemonic), message.is_value)
         return answer.removesuffix(message.LINE_END).decode("ascii", "replace")
 
     def write(self, mnemonic: str, *parameters: int | str) -> None:
@@ -95,7 +95,7 @@ class NodeClient:
             The node refuses it.
         """
         request = message.command(mnemonic, *parameters)
-        answer = self._dialogue.ask(request)
+        answer = self._dialogue.ask(request, message.is_acknowledgement)
         if answer != message.ACCEPTED:
             raise self._fault(
                 f"{request.decode()} was answered with {answer.decode('ascii', 'replace').strip()}",
