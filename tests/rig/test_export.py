@@ -180,3 +180,16 @@ def test_tensions_poses_and_pictures_of_an_mcap_share_one_time_line(
 def test_an_export_is_one_or_the_other(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_app(app, ["export", "run"]) == 2
     assert "either --parquet or --mcap" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("what", ["--parquet", "--mcap"])
+def test_a_place_that_cannot_be_written_is_told_in_one_message(
+    here: Path, what: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pyarrow")
+    (here / "file").write_text("no folder")
+    assert run_app(app, ["export", "run01", what, "--out", "file/out"]) == 3
+    told = capsys.readouterr().err
+    assert "file" in told.splitlines()[0]
+    assert "cannot be used: " in told
+    assert "remedy:  name a place" in told
