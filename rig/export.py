@@ -102,9 +102,8 @@ def _in_order(run: Run) -> Iterator[_Message]:
 
     for cable in range(1, CABLES + 1):
         rows = run.tension[run.tension["cable"] == cable].sort_values("t_s", kind="stable")
-        for t_s, tension_n, status in zip(
-            rows["t_s"], rows["tension_n"], rows["status"], strict=True
-        ):
+        times_s = rows["t_s"] - run.filter_delay_s(cable)
+        for t_s, tension_n, status in zip(times_s, rows["tension_n"], rows["status"], strict=True):
             value = {"tension_n": float(tension_n), "status": int(status)}
             yield at(t_s), f"/tension/{cable}", "cdpr8.Tension", value
     for t_s, kind, detail in zip(
