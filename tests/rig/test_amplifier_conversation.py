@@ -123,6 +123,32 @@ def test_a_late_answer_is_not_taken_for_that_to_the_next_question(
     assert late == []
 
 
+def test_a_scan_tells_what_each_cell_gives_and_leaves_the_format_as_it_was(rig: Rig) -> None:
+    bus, transport = simulated_line(without_noise(rig))
+    Bus(transport, rig).start()
+    bus.nodes[1].settings["NOV"] = 5000
+    found = list(scan(transport, range(1, 9)))
+    assert [node.settings["COF"] for node in bus.nodes] == [24] * 8
+    assert found[1].signal_mv_per_v is None
+    for each in (found[0], *found[2:]):
+        assert each.signal_mv_per_v == pytest.approx((5.0 + 2.0 * each.address) / 50.0, abs=1e-5)
+
+
+def test_an_amplifier_that_falls_silent_in_a_scan_is_listed_with_its_trouble(rig: Rig) -> None:
+    bus, inner = simulated_line(rig)
+
+    def fall_silent(request: bytes) -> float:
+        if request == b"ASF?;":
+            bus.nodes[1].powered = False
+        return 0.0
+
+    found = {each.address: each for each in scan(HeldUp(inner, fall_silent), range(2, 4))}
+    assert found[2].identity is not None
+    assert "ASF?; was not answered" in found[2].trouble
+    assert found[2].settings == {"BDR": "115200,1", "COF": "009", "ICR": "0"}
+    assert found[3].trouble == ""
+
+
 def test_what_cannot_be_the_answer_is_no_answer() -> None:
     # "172" for an acknowledgement, twice: told as it came, and never as a refusal.
     pairs = [(b"CSM1;", b"172\r\n"), (b";", b"")] * 2 + [(b"CSM1;", b"172\r\n")]
