@@ -254,6 +254,7 @@ def _bad_record(path: Path, error: Exception) -> DataError:
         return DataError(
             f"{key + ': ' if key else ''}{fault['msg']}",
             where=str(path),
-            allowed=f"the keys of cdpr8/runfolder/schemas/{path.stem}.schema.json",
+            allowed="the keys of cdpr8/runfolder/schemas/"
+            f"v{SCHEMA_VERSION}/{path.stem}.schema.json",
         )
     return DataError(f"cannot be read: {error}", where=str(path))
