@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from cdpr8.errors import ExitCode, ToolkitError
+from cdpr8.errors import DataError, ExitCode, ToolkitError
 
 if TYPE_CHECKING:
     import typer
@@ -45,7 +45,20 @@ def run_app(app: "typer.Typer", arguments: Sequence[str] | None = None) -> int:
         return int(error.exit_code)
     except BrokenPipeError:
         return ExitCode.OK
+    except OSError as error:
+        # A file that a command could not foresee: a folder that is not there, a disk that is full.
+        complain(_unusable(error).sentence())
+        return int(ExitCode.BAD_DATA)
     return ExitCode.OK
+
+
+def _unusable(error: OSError) -> DataError:
+    named = "" if error.filename is None else str(error.filename)
+    return DataError(
+        f"cannot be used: {error.strerror or error}",
+        where=named,
+        remedy="name a place that is there, has room, and that you may read and write",
+    )
 
 
 def entry(app: "typer.Typer") -> Callable[[], None]:

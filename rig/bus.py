@@ -11,7 +11,7 @@ from rig.amplifier.profile import Identity, profile_of
 from rig.amplifier.scaling import Scaling
 from rig.assignment import amplifiers
 from rig.station import Station, Value, check_identity
-from rig.transport import LineLostError, Transport
+from rig.transport import LineLostError, Received, Transport
 
 STOP_WAIT_S = 0.1
 """Silence after ``;S98;STP;`` (protocol note, section 10)."""
@@ -19,8 +19,17 @@ STOP_WAIT_S = 0.1
 VALUE_MARGIN_S = 0.02
 """How much longer than its bytes a value may take (protocol note, section 10, timeouts)."""
 
+LATE_S = 0.05
+"""How long an answer that was given up may be held up, and those behind it, once they come."""
+
+BAUD_TOLERANCE = 0.05
+"""How much faster than its name a line may be; beyond 5 % it would not be understood."""
+
 JITTER_S = 0.0005
 """How much the way to the node and back may vary, in adapters, without the computer's fault."""
+
+UNTIMED_S = 0.002
+"""An answer held up for longer, and for longer than an output period, has no known time."""
 
 ALL_STOP = message.END + message.select(message.BROADCAST) + message.command("STP")
 ALL_MEASURE = message.END + message.select(message.BROADCAST) + b"MSV?0;"
@@ -55,8 +64,9 @@ class Bus:
             csm=1 if rig.bus.checksum or rig.bus.parity == "none" else 0,
         )
         self._asked: Station | None = None
-        self._asked_s = self._sent_s = 0.0
-        self._least_late_s: dict[int, float] = {}
+        self._asked_s = 0.0
+        self._least_s: dict[int, float] = {}
+        self._late_feared = False
 
     def start(self) -> tuple[Station, ...]:
         """Silence the bus, identify, configure and start all amplifiers.
@@ -139,7 +149,9 @@ class Bus:
         node = NodeClient(self._dialogue, station.address)
         try:
             # Selected it is; a node out of bus mode answers questions.
-            answer = self._dialogue.ask(message.query("IDN"), tries=1, margin_s=VALUE_MARGIN_S)
+            answer = self._dialogue.ask(
+                message.query("IDN"), message.is_identity, tries=1, margin_s=VALUE_MARGIN_S
+            )
             if Identity.parse(answer) != station.identity:
                 return False
             if node.configure(self._settings) != station.settings:
@@ -197,7 +209,6 @@ class Bus:
             raise BadFrameError("bytes that nobody asked for", stray)
         self._asked_s = self.transport.clock.monotonic_s()
         self.transport.write(station.request)
-        self._sent_s = self.transport.clock.monotonic_s()
         self._asked = station
 
     def _take(self, station: Station) -> Value:
@@ -208,29 +219,54 @@ class Bus:
         line, length = transport.line, station.format.length
         deadline_s = request_s + (len(station.request) + length) * line.char_s + VALUE_MARGIN_S
         received = transport.read(length, deadline_s)
+        self._late_feared |= len(received.data) < length
         if received.damaged:
             raise BadFrameError("parity error", received.data)
         reading = station.format.decode(received.data)
         if received.last_byte_s > deadline_s:
             raise BadFrameError("noticed too late to be timed", received.data)
-        answer_s = self._answer_s(station, received.last_byte_s - length * line.char_s)
-        return Value(reading, request_s, received.last_byte_s, answer_s - station.period_s / 2.0)
+        self._require_no_other(station, received)
+        answer_s, held_up_s = self._answered(station, received.last_byte_s - length * line.char_s)
+        return Value(
+            reading,
+            request_s,
+            received.last_byte_s,
+            answer_s - station.period_s / 2.0,
+            timed=held_up_s <= max(station.period_s, UNTIMED_S),
+        )
 
-    def _answer_s(self, station: Station, received_s: float) -> float:
-        """When an answer began: as its arrival tells, but no later than the request allows.
+    def _require_no_other(self, station: Station, received: Received) -> None:
+        """Refuse an answer that may be to an earlier request.
 
-        A busy computer notices an answer late, and the arrival with it; a node always takes about
-        the same time to answer. So an answer began no later than the request had gone out, plus
-        the least time this node has ever taken, plus `JITTER_S`. That least time counts from just
-        before the request was written: this thread may have stood still after it, and a node that
-        seems to answer too soon would pull all later answers with it.
+        An answer that was given up may still come, held up by an adapter or a busy computer, and
+        then stands before that to the next request: from there on each amplifier's value would be
+        taken for the next one's. It comes sooner than the line could have carried question and
+        answer, or another answer comes right behind it.
         """
-        line_s = len(station.request) * self.transport.line.char_s
-        late_s = received_s - self._sent_s - line_s
-        took_s = received_s - self._asked_s - line_s
-        least_s = min(took_s, self._least_late_s.get(station.address, took_s))
-        self._least_late_s[station.address] = least_s
-        return received_s - max(0.0, late_s - least_s - JITTER_S)
+        chars = len(station.request) + len(received.data)
+        took_s = received.last_byte_s - self._asked_s
+        if took_s < (1.0 - BAUD_TOLERANCE) * chars * self.transport.line.char_s:
+            self._late_feared = True
+            raise BadFrameError("it came too soon to be the answer", received.data)
+        if self._late_feared:
+            if behind := self.transport.drain(LATE_S):
+                raise BadFrameError("another answer came behind it", received.data + behind)
+            self._late_feared = False
+
+    def _answered(self, station: Station, received_s: float) -> tuple[float, float]:
+        """When an answer began, and how long it was held up.
+
+        A node takes about the same time to answer always, and the line never less than the request
+        needs: the least time that a node has taken is that of the line and of this program. What
+        an answer takes beyond it was held up on the way there or on the way back, and nobody can
+        tell which: in adapters, up to `JITTER_S`, both alike; in a computer that was busy, most
+        likely on the way back (docs/decisions/0008).
+        """
+        took_s = received_s - self._asked_s - len(station.request) * self.transport.line.char_s
+        least_s = max(0.0, min(took_s, self._least_s.get(station.address, took_s)))
+        self._least_s[station.address] = least_s
+        held_up_s = max(0.0, took_s - least_s)
+        return received_s - held_up_s + min(held_up_s, JITTER_S) / 2.0, held_up_s
 
     def _identify_all(self) -> dict[int, Identity]:
         found: dict[int, Identity] = {}

@@ -181,7 +181,7 @@ def record_command(
 def scan_command(
     rig: RigOption = None, simulated: SimulatedOption = False, as_json: JsonOption = False
 ) -> None:
-    """List the amplifiers that answer on the bus, with their settings.
+    """List the amplifiers that answer on the bus, with their settings and what they measure.
 
     Example: rig scan --rig lab.toml
     """
@@ -208,6 +208,7 @@ def scan_command(
                     "cable": cables.get(node.address),
                     "identity": node.identity.text if node.identity else None,
                     "settings": node.settings,
+                    "signal_mv_per_v": node.signal_mv_per_v,
                     "trouble": node.trouble or None,
                 }
                 for node in found
@@ -215,7 +216,7 @@ def scan_command(
         )
     elif found:
         table = Table(title=f"{len(found)} amplifiers on {opened.transport.name}")
-        for heading in ("address", "cable", "type", "serial", *SHOWN, "trouble"):
+        for heading in ("address", "cable", "type", "serial", "mV/V", *SHOWN, "trouble"):
             table.add_column(heading)
         for node in found:
             who = node.identity
@@ -224,6 +225,7 @@ def scan_command(
                 str(cables.get(node.address, "-")),
                 who.type if who else "?",
                 who.serial_number if who else "?",
+                "" if node.signal_mv_per_v is None else f"{node.signal_mv_per_v:+.4f}",
                 *(node.settings.get(name, "") for name in SHOWN),
                 node.trouble,
             )

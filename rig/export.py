@@ -83,7 +83,7 @@ def export_mcap(run: Run, path: Path) -> Path:
                 channels[topic],
                 log_time=time_ns,
                 publish_time=time_ns,
-                data=json.dumps(message).encode(),
+                data=json.dumps(message, allow_nan=False).encode(),
             )
         writer.finish()
     return path
@@ -102,9 +102,8 @@ def _in_order(run: Run) -> Iterator[_Message]:
 
     for cable in range(1, CABLES + 1):
         rows = run.tension[run.tension["cable"] == cable].sort_values("t_s", kind="stable")
-        for t_s, tension_n, status in zip(
-            rows["t_s"], rows["tension_n"], rows["status"], strict=True
-        ):
+        times_s = rows["t_s"] - run.filter_delay_s(cable)
+        for t_s, tension_n, status in zip(times_s, rows["tension_n"], rows["status"], strict=True):
             value = {"tension_n": float(tension_n), "status": int(status)}
             yield at(t_s), f"/tension/{cable}", "cdpr8.Tension", value
     for t_s, kind, detail in zip(
@@ -180,33 +179,54 @@ def _pictures(run: Run, at: Any) -> Iterator[_Message]:
 
 
 def _object(**properties: dict[str, Any]) -> dict[str, Any]:
-    return {"type": "object", "properties": properties}
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+def _named(title: str, **properties: dict[str, Any]) -> dict[str, Any]:
+    return {"title": title, **_object(**properties)}
 
 
 _NUMBER, _TEXT, _WHOLE = {"type": "number"}, {"type": "string"}, {"type": "integer"}
+_COUNT = {**_WHOLE, "minimum": 0}
 
-_TIME = _object(sec=_WHOLE, nsec=_WHOLE)
-_POINT = _object(x=_NUMBER, y=_NUMBER, z=_NUMBER)
-_QUATERNION = _object(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER)
+_TIME = _named("time", sec=_COUNT, nsec={**_COUNT, "maximum": _NS - 1})
+_POINT = _named("foxglove.Vector3", x=_NUMBER, y=_NUMBER, z=_NUMBER)
+_QUATERNION = _named("foxglove.Quaternion", x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER)
+_LEVEL = {
+    "title": "foxglove.LogLevel",
+    "oneOf": [
+        {"title": name, "const": level}
+        for level, name in enumerate(("UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL"))
+    ],
+}
 
 _SCHEMAS = {
     "cdpr8.Tension": _object(tension_n=_NUMBER, status=_WHOLE),
-    "cdpr8.Command": _object(**dict.fromkeys(_COMMANDS, _NUMBER)),
+    # What the log does not give is left out.
+    "cdpr8.Command": {**_object(**dict.fromkeys(_COMMANDS, _NUMBER)), "required": []},
     "cdpr8.Pose": _object(**dict.fromkeys(POSE_AXES, _NUMBER)),
     # Those that Foxglove's panels know by name; the fields are as it publishes them.
-    "foxglove.Log": _object(
-        timestamp=_TIME, level=_WHOLE, message=_TEXT, name=_TEXT, file=_TEXT, line=_WHOLE
+    "foxglove.Log": _named(
+        "foxglove.Log",
+        timestamp=_TIME,
+        level=_LEVEL,
+        message=_TEXT,
+        name=_TEXT,
+        file=_TEXT,
+        line=_COUNT,
     ),
-    "foxglove.PoseInFrame": _object(
+    "foxglove.PoseInFrame": _named(
+        "foxglove.PoseInFrame",
         timestamp=_TIME,
         frame_id=_TEXT,
-        pose=_object(position=_POINT, orientation=_QUATERNION),
+        pose=_named("foxglove.Pose", position=_POINT, orientation=_QUATERNION),
     ),
-    "foxglove.CompressedImage": _object(
+    "foxglove.CompressedImage": _named(
+        "foxglove.CompressedImage",
         timestamp=_TIME,
         frame_id=_TEXT,
-        format=_TEXT,
         data={"type": "string", "contentEncoding": "base64"},
+        format=_TEXT,
     ),
 }
 

@@ -65,6 +65,9 @@ class Intake:
             status |= TensionStatus.ADC_OVERFLOW
         if station.scaling.overloaded(tension_n):
             status |= TensionStatus.HOST_OVERLOAD
+        if not value.timed:
+            status |= TensionStatus.UNTIMED
+            self._tally.lose("untimed")
         if not believed:
             status |= TensionStatus.UNCONFIRMED
             self._tally.lose("unconfirmed")

@@ -72,6 +72,7 @@ _LOST = {
     "camera_lost": "camera gone",
     "flagged": "samples flagged",
     "unconfirmed": "jumps not confirmed",
+    "untimed": "samples too late to be timed",
     "line_lost": "times the line was gone",
     "missing": "values missing in streams",
     "restart": "streams started anew",

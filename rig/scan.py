@@ -1,4 +1,4 @@
-"""Who is on the bus: every address asked once (protocol note, section 3)."""
+"""Who is on the bus and what each measures: every address asked once (protocol note, section 3)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ from rig.amplifier import message
 from rig.amplifier.dialogue import Dialogue, NoAnswerError
 from rig.amplifier.node import NodeClient
 from rig.amplifier.profile import Identity
+from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V
 from rig.bus import ALL_STOP, STOP_WAIT_S
 from rig.transport import Transport
 
@@ -29,12 +30,15 @@ class Found:
         Command -> answer.
     trouble
         What was wrong with the answer; empty where nothing was.
+    signal_mv_per_v
+        What the cell gives now; None where a scaling inside the amplifier (NOV) hides it.
     """
 
     address: int
     identity: Identity | None
     settings: dict[str, str]
     trouble: str = ""
+    signal_mv_per_v: float | None = None
 
 
 def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator[Found]:
@@ -52,13 +56,25 @@ def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator
     transport.drain(STOP_WAIT_S)
     for address in addresses:
         node = NodeClient(dialogue, address)
+        identity, settings = None, {}
         try:
             identity = node.identify(tries=1)
-            yield Found(address, identity, {name: node.read(name) for name in SHOWN})
+            for name in SHOWN:
+                settings[name] = node.read(name)
+            signal_mv_per_v = _signal(node, settings)
+            yield Found(address, identity, settings, signal_mv_per_v=signal_mv_per_v)
         except NoAnswerError as silence:
-            if silence.came:
-                yield Found(address, None, {}, f"garbled: {silence.came!r}")
             dialogue.settle()
+            if identity is not None:
+                yield Found(address, identity, settings, silence.what)
+            elif silence.came:
+                yield Found(address, None, {}, f"garbled: {silence.came!r}")
         except DeviceError as fault:
             dialogue.settle()
-            yield Found(address, None, {}, fault.what)
+            yield Found(address, identity, settings, fault.what)
+
+
+def _signal(node: NodeClient, settings: dict[str, str]) -> float | None:
+    if message.parse_integer(settings["NOV"].encode(), "NOV?") != 0:
+        return None
+    return node.measure() / DIGITS_PER_MV_PER_V

@@ -68,7 +68,6 @@ def start_record(
 
 
 def _node(station: Station, zeros: Zeros | None) -> Node:
-    cut_off_hz = station.profile.cut_offs_hz[int(station.settings["ASF"])]
     return Node.model_validate(
         {
             "cable": station.cable,
@@ -80,11 +79,20 @@ def _node(station: Station, zeros: Zeros | None) -> Node:
             "zero_mv_per_v": station.scaling.zero_mv_per_v,
             "zero_taken": taken(zeros, station.cable),
             "output_period_s": station.period_s,
-            # First-order behaviour is a fair model of the filter (protocol note, section 8);
-            # stored, never applied to the times in tension.csv.
-            "filter_delay_s": 0.0 if cut_off_hz is None else 1.0 / (2.0 * math.pi * cut_off_hz),
+            "filter_delay_s": _filter_delay_s(station),
         }
     )
+
+
+def _filter_delay_s(station: Station) -> float:
+    """How late a steady change shows: first-order filter, then the mean over an output period.
+
+    First-order behaviour is a fair model of the filter (protocol note, section 8). Stored, and
+    applied where the run is read: the times in tension.csv are those of the bus.
+    """
+    cut_off_hz = station.profile.cut_offs_hz[int(station.settings["ASF"])]
+    filter_s = 0.0 if cut_off_hz is None else 1.0 / (2.0 * math.pi * cut_off_hz)
+    return filter_s + (station.period_s - station.profile.period_s(0)) / 2.0
 
 
 def _camera(camera: Camera | None, rig: Rig) -> CameraStart | None:

@@ -67,12 +67,16 @@ class Value:
     sampled_s
         Estimated sampling instant: the start of the answer less the mean age of a newest value.
         Its standard uncertainty is the period over the square root of 12 (section 9).
+    timed
+        Whether it is known: not where the answer was held up by more than that, on the way to the
+        amplifier or on the way back.
     """
 
     reading: Reading
     request_s: float
     received_s: float
     sampled_s: float
+    timed: bool = True
 
 
 def check_identity(

@@ -120,7 +120,7 @@ def _losses(run: Run) -> Iterator[Finding]:
     for kind in (EventKind.BAD_FRAME, EventKind.NODE_LOST, EventKind.LINE_LOST, EventKind.PAUSE):
         if kind.value not in lost and counts[kind.value]:
             lost[kind.value] = counts[kind.value]
-    total = sum(count for what, count in lost.items() if what != "flagged")
+    total = sum(count for what, count in lost.items() if what not in ("flagged", "untimed"))
     share = total / max(1, len(run.tension))
     words = ", ".join(f"{what} {count}" for what, count in lost.items()) or "nothing"
     verdict = Verdict.OK if not lost else Verdict.FAIL if share > MOST_LOST else Verdict.WARN

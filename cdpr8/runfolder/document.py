@@ -34,6 +34,7 @@ _MEANING: dict[type[IntFlag], dict[IntFlag, str]] = {
         TensionStatus.HOST_OVERLOAD: "beyond the host's own limit for the force cell",
         TensionStatus.STALE: "repeats an old value; not used",
         TensionStatus.UNCONFIRMED: "a jump that a second reading did not confirm; not used",
+        TensionStatus.UNTIMED: "came too late for its time to be known; not used",
     },
     FrameFlag: {
         FrameFlag.DROPPED_BEFORE: "a frame was lost before this one",

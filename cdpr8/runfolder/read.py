@@ -70,12 +70,18 @@ class Run:
         path = self.folder / "video.mkv"
         return path if path.is_file() else None
 
+    def filter_delay_s(self, cable: int) -> float:
+        """How much later a cable's amplifier gives a tension than it was, as far as is known."""
+        stated = (node.filter_delay_s for node in self.start.nodes if node.cable == cable)
+        return next(stated, None) or 0.0
+
     def cable_tension(self, cable: int) -> "pd.DataFrame":
-        """Good samples of one cable (1 to 8), in order of time."""
+        """Good samples of one cable (1 to 8), in order of time; its filter's delay is taken off."""
         rows = self.tension["cable"] == cable
         rows &= (self.tension["status"].to_numpy() & int(BAD_TENSION)) == 0
         rows &= self.tension["tension_n"].notna()
         good: pd.DataFrame = self.tension[rows]
+        good = good.assign(t_s=good["t_s"] - self.filter_delay_s(cable))
         return good.sort_values("t_s", kind="stable").reset_index(drop=True)
 
 
@@ -248,6 +254,7 @@ def _bad_record(path: Path, error: Exception) -> DataError:
         return DataError(
             f"{key + ': ' if key else ''}{fault['msg']}",
             where=str(path),
-            allowed=f"the keys of cdpr8/runfolder/schemas/{path.stem}.schema.json",
+            allowed="the keys of cdpr8/runfolder/schemas/"
+            f"v{SCHEMA_VERSION}/{path.stem}.schema.json",
         )
     return DataError(f"cannot be read: {error}", where=str(path))

@@ -30,7 +30,9 @@ class Node(Record):
         default=None, description="between two values inside the amplifier, nominal"
     )
     filter_delay_s: float | None = Field(
-        default=None, description="of the amplifier's filter; not taken off the times"
+        default=None,
+        description="of the amplifier's filter and averaging; taken off the times at reading, "
+        "never in tension.csv",
     )
 
 

@@ -29,6 +29,7 @@ class TensionStatus(IntFlag):
     HOST_OVERLOAD = 256
     STALE = 512
     UNCONFIRMED = 1024
+    UNTIMED = 2048
 
 
 BAD_TENSION = (
@@ -37,6 +38,7 @@ BAD_TENSION = (
     | TensionStatus.ADC_OVERFLOW
     | TensionStatus.STALE
     | TensionStatus.UNCONFIRMED
+    | TensionStatus.UNTIMED
 )
 """A sample with any of these bits is kept and never used as a measured value."""
 

@@ -72,9 +72,11 @@ class VideoWriter:
 
     def close(self) -> None:
         """Write what the encoder still holds and the index."""
-        for packet in self._stream.encode(None):
-            self._container.mux(packet)
-        self._container.close()
+        try:
+            for packet in self._stream.encode(None):
+                self._container.mux(packet)
+        finally:
+            self._container.close()
 
 
 def read_video(path: Path) -> Iterator[tuple[Image, float | None]]:

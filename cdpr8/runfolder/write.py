@@ -4,6 +4,7 @@ import json
 import math
 import os
 from collections.abc import Mapping
+from contextlib import ExitStack
 from io import BufferedWriter, TextIOWrapper
 from pathlib import Path
 from typing import Self
@@ -180,17 +181,33 @@ class RunWriter:
         self.events.flush()
 
     def stop(self, record: StopRecord) -> None:
-        """Close the tables and say how the run ended."""
-        self.close()
-        _write_synced(self.folder / "stop.json", _as_json(record))
+        """Close every file and say how the run ended, even where a file cannot be closed.
+
+        Raises
+        ------
+        OSError
+            A file could not be closed; the stop record is written all the same.
+        """
+        try:
+            self.close()
+        finally:
+            _write_synced(self.folder / "stop.json", _as_json(record))
 
     def close(self) -> None:
-        """Close every file; without `stop` the run stays marked as interrupted."""
-        if self._video is not None:
-            self._video.close()
-            self._video = None
-        for table in self.tables:
-            table.close()
+        """Close every file; without `stop` the run stays marked as interrupted.
+
+        Raises
+        ------
+        OSError
+            A file could not be closed; the others are, all the same. A video that once met a full
+            disk raises it again here, whatever room there is by now.
+        """
+        video, self._video = self._video, None
+        with ExitStack() as stack:
+            for each in reversed(self.tables):
+                stack.callback(each.close)
+            if video is not None:
+                stack.callback(video.close)
 
 
 def _video(folder: Path, start: StartRecord) -> VideoWriter | None:

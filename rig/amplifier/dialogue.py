@@ -2,8 +2,13 @@
 
 There is no transaction number: a late answer cannot be told from the next one. So exactly one
 request is outstanding, and after any doubt the line is cleared and left silent for longer than
-the slowest answer before the next request.
+the slowest answer before the next request. A computer or an adapter may hold an answer up for
+longer than any amplifier does: where something went unanswered, the next answer may be to that, and
+is not believed before a longer silence and the same question again.
 """
+
+import math
+from collections.abc import Callable
 
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
@@ -18,6 +23,11 @@ MARGIN_S = 0.085
 
 SETTLE_S = 0.02
 """Silence after which no late answer is to be feared: above `ANSWER_S`."""
+
+LATE_S = 0.5
+"""An answer later than this after its request comes no more: amplifiers take `ANSWER_S`, adapters
+as long again, and the rest is for a computer that stands still.
+"""
 
 TRIES = 3
 LONGEST_ANSWER = 64
@@ -58,6 +68,7 @@ class Dialogue:
     def __init__(self, transport: Transport) -> None:
         self.transport = transport
         self._unused = bytearray()
+        self._late_until_s = -math.inf
 
     @property
     def clock(self) -> Clock:
@@ -84,34 +95,45 @@ class Dialogue:
         """Send what is not answered."""
         self.transport.write(b"".join(messages))
 
-    def ask(self, request: bytes, *, tries: int = TRIES, margin_s: float = MARGIN_S) -> bytes:
+    def ask(
+        self,
+        request: bytes,
+        fits: Callable[[bytes], bool] = message.is_line,
+        *,
+        tries: int = TRIES,
+        margin_s: float = MARGIN_S,
+    ) -> bytes:
         """Send one request and return its answer with the line end.
 
         Parameters
         ----------
         request
-            What is sent.
+            What is sent; it may be sent several times.
+        fits
+            Whether a line can be an answer to this request.
         tries
-            How often at most.
+            How often it is asked at most, where no answer comes.
         margin_s
             How much longer than documented an answer may take.
 
         Raises
         ------
         NoAnswerError
-            Nothing whole came.
+            Nothing whole came, or nothing that fits.
         """
         raw = b""
         for attempt in range(tries):
             if attempt:
                 self.settle()
-            self.keep(self.transport.discard())
-            self.transport.write(request)
-            wait_s = (len(request) + LONGEST_ANSWER) * self.transport.line.char_s
-            received = self._read_line(self.clock.monotonic_s() + wait_s + ANSWER_S + margin_s)
-            if received.data.endswith(message.LINE_END) and not received.damaged:
-                return received.data
-            raw = received.data
+            raw, whole = self._exchange(request, margin_s)
+            doubt_s = self._late_until_s - self.clock.monotonic_s()
+            if whole and fits(raw) and doubt_s > 0.0:
+                self.keep(raw)
+                self.hush(doubt_s)
+                raw, whole = self._exchange(request, margin_s)
+            if whole and fits(raw):
+                return raw
+            self._late_until_s = self.clock.monotonic_s() + LATE_S
             self.keep(raw)
         raise NoAnswerError(request, raw, self.transport.name)
 
@@ -119,6 +141,14 @@ class Dialogue:
         """Clear the nodes' input and wait until no late answer can come; returns what came."""
         self.transport.write(message.END)
         return self.hush(SETTLE_S)
+
+    def _exchange(self, request: bytes, margin_s: float) -> tuple[bytes, bool]:
+        """What comes after a request, and whether it is a whole line without damage."""
+        self.keep(self.transport.discard())
+        self.transport.write(request)
+        wait_s = (len(request) + LONGEST_ANSWER) * self.transport.line.char_s
+        received = self._read_line(self.clock.monotonic_s() + wait_s + ANSWER_S + margin_s)
+        return received.data, message.is_line(received.data) and not received.damaged
 
     def _read_line(self, deadline_s: float) -> Received:
         data = b""

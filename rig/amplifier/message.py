@@ -1,5 +1,7 @@
 """Commands and answers as text: three letters, parameters, a semicolon (sections 2 and 3)."""
 
+import re
+
 from cdpr8.errors import DeviceError
 
 END = b";"
@@ -8,6 +10,8 @@ END = b";"
 ACCEPTED = b"0\r\n"
 REFUSED = b"?\r\n"
 LINE_END = b"\r\n"
+
+_NUMBERS = re.compile(rb"[ +-]?\d+(,[ +-]?\d+)*\r\n")
 
 BROADCAST = 98
 """`S98;` addresses every node, and none answers."""
@@ -29,6 +33,26 @@ def query(mnemonic: str) -> bytes:
 def select(address: int) -> bytes:
     """`Sxx;`: the node listens until another S; in bus mode it answers with its newest value."""
     return f"S{address:02d}".encode("ascii") + END
+
+
+def is_line(answer: bytes) -> bool:
+    """Whether an answer came to its end."""
+    return answer.endswith(LINE_END)
+
+
+def is_acknowledgement(answer: bytes) -> bool:
+    """Whether an answer can be that to a setting."""
+    return answer in (ACCEPTED, REFUSED)
+
+
+def is_value(answer: bytes) -> bool:
+    """Whether an answer can be that to the question for a setting: numbers, or refused."""
+    return answer == REFUSED or _NUMBERS.fullmatch(answer) is not None
+
+
+def is_identity(answer: bytes) -> bool:
+    """Whether an answer can be that to `IDN?`: no other has letters and three commas."""
+    return answer.count(b",") >= 3
 
 
 def parse_integer(answer: bytes, asked: str) -> int:

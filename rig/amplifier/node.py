@@ -11,6 +11,13 @@ PASSWORD = "AED"
 """Factory password; commands marked "pw" in section 4 need it."""
 
 
+VALUE_AS_TEXT = 3
+"""The output format of sign, seven digits and CR LF (section 5)."""
+
+SLOWEST_VALUE_S = 1.1
+"""A value is waited for: at the slowest output rate for a second (section 8)."""
+
+
 @dataclass(frozen=True)
 class Settings:
     """What a node is set to before a run; everything else is left as it is.
@@ -79,11 +86,11 @@ class NodeClient:
         # The selection goes out with the question: a lone terminator first, so that nothing
         # half-sent stands before it (section 2).
         request = message.END + message.select(self.address) + message.query("IDN")
-        return Identity.parse(self._dialogue.ask(request, tries=tries))
+        return Identity.parse(self._dialogue.ask(request, message.is_identity, tries=tries))
 
     def read(self, mnemonic: str) -> str:
         """The answer to a query, without its line end; the node must be selected."""
-        answer = self._dialogue.ask(message.query(mnemonic))
+        answer = self._dialogue.ask(message.query(mnemonic), message.is_value)
         return answer.removesuffix(message.LINE_END).decode("ascii", "replace")
 
     def write(self, mnemonic: str, *parameters: int | str) -> None:
@@ -95,12 +102,27 @@ class NodeClient:
             The node refuses it.
         """
         request = message.command(mnemonic, *parameters)
-        answer = self._dialogue.ask(request)
+        answer = self._dialogue.ask(request, message.is_acknowledgement)
         if answer != message.ACCEPTED:
             raise self._fault(
                 f"{request.decode()} was answered with {answer.decode('ascii', 'replace').strip()}",
                 allowed="0 (accepted)",
             )
+
+    def measure(self) -> int:
+        """What it measures now, as text gives it (`text_frame.DIGITS_PER_MV_PER_V` at NOV=0).
+
+        Its output must be stopped. The format is put back; nothing is saved.
+        """
+        format_ = message.parse_integer(self.read("COF").encode(), "COF?")
+        self.write("COF", VALUE_AS_TEXT)
+        try:
+            answer = self._dialogue.ask(
+                message.query("MSV"), message.is_value, margin_s=SLOWEST_VALUE_S
+            )
+        finally:
+            self.write("COF", format_)
+        return message.parse_integer(answer, "MSV?")
 
     def configure(self, settings: Settings) -> dict[str, str]:
         """Write the settings, read each back, and return what was read.

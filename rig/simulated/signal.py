@@ -9,6 +9,7 @@ order values are asked for.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -155,12 +156,11 @@ class NodeSignal:
         cut_off_hz = self._profile.cut_offs_hz[asf]
         if cut_off_hz is None:
             return self._input(index, origin_s)
-        from scipy.signal import lfilter
-
         time_constant_s = 1.0 / (2.0 * math.pi * cut_off_hz)
         warm_up = math.ceil(WARM_UP_TIME_CONSTANTS * time_constant_s / self._internal_s)
         longer = np.arange(index[0] - warm_up, index[-1] + 1)
         keep = math.exp(-self._internal_s / time_constant_s)
         signal = self._input(longer, origin_s)
-        smooth, _ = lfilter([1.0 - keep], [1.0, -keep], signal, zi=[keep * signal[0]])
-        return np.asarray(smooth[warm_up:], dtype=np.float64)
+        # Without SciPy, whose import would keep the first value waiting for a second.
+        smooth = list(accumulate(signal.tolist(), lambda y, x: keep * y + (1.0 - keep) * x))
+        return np.array(smooth[warm_up:])

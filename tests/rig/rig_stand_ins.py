@@ -131,6 +131,26 @@ def simulated_line(
     return bus, MemoryTransport(bus, line, clock)
 
 
+class HeldUp:
+    """A line in memory that holds answers up, those behind in order, as a busy computer does.
+
+    `held_s(request)` tells how long what answers a request is held, in s.
+    """
+
+    def __init__(self, inner: MemoryTransport, held_s: Callable[[bytes], float]) -> None:
+        self._inner = inner
+        self._held_s = held_s
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._inner, name)
+
+    def write(self, data: bytes) -> None:
+        bus = self._inner._far_end
+        free_s = self._inner.clock.monotonic_s() + self._held_s(data)
+        bus._answer_free_s = max(bus._answer_free_s, free_s)
+        self._inner.write(data)
+
+
 def motion(duration_s: float) -> Excitation:
     rest_s = min(0.25, duration_s / 4)
     return Excitation(rest_s=rest_s, motion_s=duration_s - 2 * rest_s, ramp_s=0.0)

@@ -1,11 +1,14 @@
 """The bus on a virtual clock: its rate, and the times of its values."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from rig_stand_ins import WavePlatform, simulated_line, with_bus, without_noise
 
 from cdpr8.rigfile import Rig
 from rig.bus import Bus
+from rig.transport import Received
 
 SWEEPS_PER_S = {9600: 10.9, 38400: 43.6, 57600: 65.5, 115200: 131.0}
 """Protocol note, section 9: bus mode, 4 bytes and CRLF, eight nodes, no turnaround."""
@@ -54,6 +57,35 @@ def test_sampling_instants_are_right_within_a_third_of_the_output_period(
         assert value.request_s < value.received_s
     assert np.sqrt(np.mean(np.square(errors))) < 0.35 * period_s
     assert abs(np.mean(errors)) < 0.05 * period_s
+
+
+@pytest.mark.parametrize(
+    ("held_s", "output_rate", "timed"),
+    [(0.0, 0, True), (0.001, 0, True), (0.003, 0, False), (0.003, 3, True), (0.01, 3, False)],
+)
+def test_a_value_held_up_for_more_than_its_period_has_no_known_time(
+    rig: Rig, held_s: float, output_rate: int, timed: bool
+) -> None:
+    rig = with_bus(without_noise(rig), output_rate=output_rate)
+    _, transport = simulated_line(rig, WavePlatform(slope_n_per_s=2.0))
+    bus = Bus(transport, rig)
+    stations = bus.start()
+    for station in stations:
+        assert bus.take(station).timed
+    read = transport.read
+
+    def read_late(count: int, deadline_s: float) -> Received:
+        received = read(count, deadline_s)
+        return replace(received, last_byte_s=received.last_byte_s + held_s)
+
+    transport.read = read_late
+    value = bus.take(stations[0])
+    assert value.timed is timed
+    # Held up on the way back: at most half of what adapters do is taken for the way there.
+    station = stations[0]
+    true_s = (station.scaling.tension_n(value.reading.digits) - 7.0) / 2.0
+    if held_s == 0.001:
+        assert value.sampled_s - true_s < station.period_s / 2 + 0.0003
 
 
 def test_a_thread_that_stood_still_after_a_request_pulls_no_later_value(rig: Rig) -> None:

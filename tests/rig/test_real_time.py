@@ -273,18 +273,22 @@ def test_sampling_instants_in_real_time_are_those_of_ground_truth(
 ) -> None:
     # A ramp without noise: the value itself says when it was sampled. The best of five.
     rig = without_noise(with_bus(rig, baud=baud))
-    platform, best = WavePlatform(slope_n_per_s=0.5), math.inf
+    platform, best = WavePlatform(slope_n_per_s=0.5), (math.inf, 1.0)
     for number in range(5):
         clock = RealClock()
         machine = assemble(rig, platform, NoisyExposer(), clock, seed=1)
         folder = tmp_path / str(number)
         record(rig, rig_text(), folder, excitation=motion(4.0), clock=clock, machine=machine)
         run, errors_s = load_run(folder), []
+        # Values without a known time are flagged; on a quiet computer hardly any.
+        untimed = run.stop.lost.get("untimed", 0) / len(run.tension)
         for cable in range(1, 9):
             rows = run.cable_tension(cable)
             rows = rows[rows["t_s"] > 0.2]
             true_s = (rows["tension_n"] - 5.0 - 2.0 * cable) / platform.slope_n_per_s
             errors_s.append((rows["t_s"] - true_s).to_numpy())
-        best = min(best, float(np.sqrt(np.mean(np.concatenate(errors_s) ** 2))))
-    record_property("rms_of_period", best * FIT.rates_per_s[0])
-    assert best < 0.35 * FIT.period_s(0)
+        best = min(best, (float(np.sqrt(np.mean(np.concatenate(errors_s) ** 2))), untimed))
+    record_property("rms_of_period", best[0] * FIT.rates_per_s[0])
+    record_property("untimed", best[1])
+    assert best[0] < 0.35 * FIT.period_s(0)
+    assert best[1] < 0.1

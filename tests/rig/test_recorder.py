@@ -85,6 +85,29 @@ def test_recorded_tensions_are_the_truth_at_the_recorded_times(rig: Rig, tmp_pat
         assert abs(lag) < 1e-4  # no systematic error of time
 
 
+@pytest.mark.parametrize(
+    ("filter_", "output_rate", "delay_s"),
+    [(0, 0, 0.0), (3, 0, 0.00398), (4, 2, 0.00884 + 0.00125), (0, 3, 0.00292)],
+)
+def test_the_filters_delay_is_taken_off_at_reading_and_never_written(
+    rig: Rig, tmp_path: Path, filter_: int, output_rate: int, delay_s: float
+) -> None:
+    # A cut-off at 40 or 18 Hz, a mean over 4 or 8 values of 1200 a second.
+    platform = WavePlatform(5.0, 2.06)
+    filtered = with_bus(rig, filter=filter_, output_rate=output_rate)
+    record_virtually(filtered, tmp_path / "run", 4.0, platform=platform, camera=False)
+    run = load_run(tmp_path / "run")
+    assert run.start.nodes[0].filter_delay_s == pytest.approx(delay_s, rel=0.01)
+    read = run.cable_tension(1)
+    written = run.tension[run.tension["cable"] == 1].sort_values("t_s")
+    assert (written["t_s"].to_numpy() - read["t_s"]).to_numpy() == pytest.approx(delay_s, rel=0.01)
+    late = read[read["t_s"] > 0.5]
+    times, phase = late["t_s"].to_numpy(), 2 * np.pi * 2.06
+    error = late["tension_n"].to_numpy() - platform.tension_at(1, times)
+    lag_s = -np.polyfit(phase * 5.0 * np.cos(phase * times), error, 1)[0]
+    assert abs(lag_s) < 6e-4
+
+
 def test_the_run_says_what_it_is(rig: Rig, tmp_path: Path) -> None:
     recording = record_virtually(rig, tmp_path / "run", 4.0, seed=11)
     run = load_run(tmp_path / "run")

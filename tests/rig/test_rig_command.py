@@ -145,6 +145,9 @@ def test_scan_lists_every_amplifier(capsys: pytest.CaptureFixture[str]) -> None:
     assert [node["cable"] for node in found] == list(range(1, 9))
     assert found[0]["settings"]["BDR"] == "115200,1"
     assert all(node["trouble"] is None for node in found)
+    for node in found:  # 50 N are 1 mV/V
+        expected = (5.0 + 2.0 * node["address"]) / 50.0
+        assert node["signal_mv_per_v"] == pytest.approx(expected, abs=1e-3)
 
 
 @pytest.mark.parametrize("arguments", [[], ["record"], ["scan"]])

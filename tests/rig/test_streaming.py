@@ -46,10 +46,10 @@ def streaming(rig: Rig) -> Rig:
 
 
 def time_errors(run: Run, cable: int) -> np.ndarray:
-    """A ramp without noise: the value itself says when it was sampled."""
+    """A ramp without noise: the value itself says when it was, which is where it is read."""
     rows = run.cable_tension(cable)
     rows = rows[rows["t_s"] > 0.1]
-    true_s = (rows["tension_n"] - 5.0 - 2.0 * cable) / SLOPE + 0.5 * (PERIOD_S - 1 / 1200)
+    true_s = (rows["tension_n"] - 5.0 - 2.0 * cable) / SLOPE
     return (rows["t_s"] - true_s).to_numpy()
 
 
