@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.engine.calibrate import Calibrated
-from analysis.engine.evidence import Problem, directions
+from analysis.engine.evidence import SPREAD, Problem, directions
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.lens import Labels
 from analysis.engine.refine import Fitted, Refiner
@@ -34,6 +34,10 @@ SMALL = 0.03
 
 UNEXPLAINED = 0.2
 """Of what nothing explains, this share may lie where candidates are looked for."""
+
+FORMS = 20
+"""An error of form lies in few directions, and in which is not known: in each it may be as large as
+if there were so many."""
 
 INDEPENDENT = 1e-9
 """Directions that hold less than this share of the strongest one's power are rounding."""
@@ -185,7 +189,7 @@ def _labels(size: int) -> Labels:
         held_out=flags,
         group=zeros,
         stretch=zeros,
-        samples=np.full(size, size),
+        samples=np.full(size, round(SPREAD * FORMS)),
         free=~flags,
         every=~flags,
         sealed=flags,
@@ -247,13 +251,14 @@ def followed_each(
     list of Fitted or None
         Their scores are those of all samples, the best first.
     """
-    system, null = refiner.system, Hypothesis()
+    system = refiner.system
     mask = [seen(bundle, everything=True) for bundle in system.bundles]
 
     def residual(prediction: Prediction) -> Array:
         return residuals(system.bundles, prediction, mask)
 
-    scored: list[Fitted] = []
+    fitted: list[Fitted] = []
+    misfits: list[float] = []
     least = np.inf
     led = [
         follow_ring(system, one.point.nuisance, one.state, everything=True) for one in hypotheses
@@ -261,14 +266,19 @@ def followed_each(
     for one in (*led, found.followed):
         (left,) = system.simulate([one.point], residual)
         least = min(least, float(np.mean(left**2)))
-        hypothesis = null if one.state is None else one.state.hypothesis
-        misfit = float(left @ left + one.nuisance @ one.nuisance)
-        state = one.state or State(null, refiner.candidates, (), np.zeros(0))
-        fitted = refiner.at(state, refiner.directions_of(one.nuisance))
-        score = hypothesis.log_prior(refiner.candidates) - 0.5 * misfit
-        scored.append(replace(fitted, log_score=score))
+        state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
+        fitted.append(refiner.at(state, refiner.directions_of(one.nuisance)))
+        misfits.append(float(left @ left + one.nuisance @ one.nuisance))
     if least > FAINT:
         return None
+    names = fitted[int(np.argmin(misfits))].hypothesis.names
+    form = max((refiner.candidates[name].form_share for name in names), default=0.0)
+    # What the best explains it explains but for its error of form, and so does every other.
+    noise = 1.0 + form**2 * (misfits[-1] - min(misfits)) / FORMS
+    scored = [
+        replace(one, log_score=one.hypothesis.log_prior(refiner.candidates) - 0.5 * misfit / noise)
+        for one, misfit in zip(fitted, misfits, strict=True)
+    ]
     return sorted(scored, key=lambda one: -one.log_score)
 
 
