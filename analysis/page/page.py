@@ -7,9 +7,18 @@ from typing import Any
 from analysis.diagnosis.figures import drawings
 from analysis.diagnosis.pictures import Pictures
 from analysis.diagnosis.spelling import listed, sentence
-from analysis.diagnosis.tables import Rows, campaign, causes, fit, located, parameters, rivals
+from analysis.diagnosis.tables import (
+    Rows,
+    balance,
+    campaign,
+    causes,
+    fit,
+    located,
+    parameters,
+    rivals,
+)
 from analysis.diagnosis.titles import rival, together
-from analysis.diagnosis.words import headline
+from analysis.diagnosis.words import SIDE, headline
 from analysis.page.figure import alt_text, figure, kind_of
 from analysis.page.gather import Material
 from analysis.page.style import CSS
@@ -87,7 +96,8 @@ def _words(said: Mapping[str, Any]) -> list[str]:
         # The headline stands at the top already.
         text = one["text"].removeprefix(first).strip()
         if text:
-            found.append(_block(one["heading"], f"<p>{escape(text)}</p>"))
+            more = _table(balance(said)) if one["heading"] == SIDE else ""
+            found.append(_block(one["heading"], f"<p>{escape(text)}</p>{more}"))
     return found
 
 
