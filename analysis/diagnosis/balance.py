@@ -71,7 +71,11 @@ class Residual:
     @property
     def significance(self) -> Array:
         """Of each row, how far its most prominent harmonic stands out, in sigmas."""
-        both = _both(self.amplitude)
+        return self.against(self.amplitude)
+
+    def against(self, amplitude: Complex) -> Array:
+        """How far such amplitudes, shape (rows, harmonics), would stand out, shape (rows,)."""
+        both = _both(amplitude)
         square = (both * np.linalg.solve(self.covariance, both[..., None])[..., 0]).sum(axis=-1)
         return np.asarray(np.sqrt(square.max(axis=1)))
 
@@ -95,6 +99,11 @@ class Balance:
         Residuals (a) in N, (b) in N and N m, and (c) in N.
     inner_directions
         Tensions that move nothing, shape (8, 2).
+    structure
+        Wrench of unit tensions at rest, shape (6, 8).
+    spring
+        Of k_i Delta L_i at the measured pose, at the drive's frequency, cosine less i sine, shape
+        (8,).
     """
 
     phase_s: Array
@@ -102,6 +111,8 @@ class Balance:
     platform: Residual
     inner: Residual
     inner_directions: Array
+    structure: Array
+    spring: Complex
 
 
 @dataclass(frozen=True)
@@ -158,7 +169,13 @@ def balance(recording: Recording) -> Balance:
         Residual(n, u, series[p], amplitude[p], covariance[p])
         for n, u, p in zip(names, units, parts, strict=True)
     )
-    return Balance(t_s - t_s[0], cables, platform, along, inner)
+    pose = part.pose_at(t_s)
+    ends = zip(machine.stiffness, machine.base, machine.anchor, strict=True)
+    spring = np.stack([k * lengths(pose, base, anchor) for k, base, anchor in ends])
+    return Balance(
+        t_s - t_s[0], cables, platform, along, inner, _structure(machine),
+        _harmonics(spring, 1)[:, 0],
+    )  # fmt: skip
 
 
 def _tension_harmonics(part: Steady) -> tuple[Array, Array]:

@@ -49,13 +49,13 @@ def residual_map(pictures: Pictures, record: str, look: Look) -> "Figure":
     rights = flat[half:] if look.narrow else flat[1::2]
     for i, (_, words) in enumerate(stages):
         left, right = lefts[i], rights[i]
-        image = _paint(left, lines[i], channels, "magma_r", LogNorm(1.0, top))
+        image = paint(left, lines[i], channels, "magma_r", LogNorm(1.0, top))
         _numbers(left, lines[i], top)
         left.set_xticks(range(lines[i].shape[1]))
         left.set_xlabel("harmonic of the drive (0: mean)")
         left.set_title(f"{words}: by harmonic", loc="left", weight="bold")
         norm = SymLogNorm(max(1.0, most / 20.0), vmin=-most, vmax=most)
-        other = _paint(right, cycles[i], channels, "PuOr", norm)
+        other = paint(right, cycles[i], channels, "PuOr", norm)
         right.set_xticks(np.linspace(-0.5, PHASES - 0.5, 5), ["0", "1/4", "1/2", "3/4", "1"])
         right.set_xlabel("part of the drive's cycle")
         right.set_title(f"{words}: by phase", loc="left", weight="bold")
@@ -94,9 +94,22 @@ def by_phase(pictures: Pictures, record: str, stage: str) -> Array:
     return np.stack(rows)
 
 
-def _paint(
+def paint(
     axes: "Axes", values: Array, channels: tuple[Channel, ...], colours: str, norm: Any
 ) -> Any:
+    """Channels below each other, one square for each value, in colours.
+
+    Parameters
+    ----------
+    axes
+        Where.
+    values
+        Shape (channels, columns); on a scale of sizes, what is below 1 is painted as 1.
+    channels
+        The rows.
+    colours, norm
+        matplotlib's colour map and scale.
+    """
     axes.grid(False)
     lifted = values if norm.vmin < 0 else np.maximum(values, 1.0)
     image = axes.imshow(lifted, aspect="auto", cmap=colours, norm=norm, interpolation="nearest")

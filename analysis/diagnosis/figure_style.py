@@ -92,7 +92,9 @@ def below_key(figure: "Figure", tall: float) -> None:
     engine.set(rect=(0, 0, 1, 1 - 0.3 / tall))
 
 
-def key(figure: "Figure", look: Look, *, named: bool, first: str = "recorded") -> None:
+def key(
+    figure: "Figure", look: Look, *, named: bool, first: str = "recorded", top: float = 0.995
+) -> None:
     """Name the three colours in a line above the panels, in their own colours."""
     words = [(first, look.recorded), ("before", look.before)]
     if named:
@@ -100,5 +102,5 @@ def key(figure: "Figure", look: Look, *, named: bool, first: str = "recorded") -
     steps = (0.3, 0.25, 0.0) if look.narrow else (0.13, 0.1, 0.0)
     at = 0.02
     for (word, colour), step in zip(words, steps, strict=False):
-        figure.text(at, 0.995, word, color=colour, weight="bold", va="top", ha="left", fontsize=10)
+        figure.text(at, top, word, color=colour, weight="bold", va="top", ha="left", fontsize=10)
         at += step

@@ -10,6 +10,7 @@ from analysis.diagnosis.figure_fit import fit, improvement
 from analysis.diagnosis.figure_loops import loops, speeds
 from analysis.diagnosis.figure_maps import residual_map
 from analysis.diagnosis.figure_ranking import ranking_figure
+from analysis.diagnosis.figure_story import story
 from analysis.diagnosis.figure_style import LIGHT, Look
 from analysis.diagnosis.pictures import Pictures
 
@@ -30,17 +31,18 @@ def drawings(said: Mapping[str, Any], pictures: Pictures | None) -> Iterator[tup
         Its arrays; None: figures of the statement alone.
     """
     if pictures is not None:
-        yield from _of_runs(pictures)
+        yield from _of_runs(said, pictures)
     if len(said.get("ranking", [])) > 1:
         yield "ranking", partial(ranking_figure, said)
     if any(said["fit"].get("before", {}).values()):
         yield "improvement", partial(improvement, said)
 
 
-def _of_runs(pictures: Pictures) -> Iterator[tuple[str, Draw]]:
+def _of_runs(said: Mapping[str, Any], pictures: Pictures) -> Iterator[tuple[str, Draw]]:
     for run in pictures.records:
         after = f"_{run.name}" if len(pictures.records) > 1 else ""
         if any(one.repeats for one in run.stretches):
+            yield f"story{after}", partial(story, said, pictures, run.name)
             yield f"map{after}", partial(residual_map, pictures, run.name)
             if pictures.of(run.name, "tension"):
                 yield f"loops{after}", partial(loops, pictures, run.name)

@@ -13,6 +13,7 @@ from analysis.diagnosis.picturing import picture
 from analysis.diagnosis.ranking import harmonics_of, ranking, ruled_out
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.run import RESULT, RunDiagnosis, one_thread_each
+from analysis.diagnosis.sides import sides
 from analysis.diagnosis.tables import markdown
 from analysis.diagnosis.words import sections
 from cdpr8.errors import DataError
@@ -59,6 +60,8 @@ def complete(found: RunDiagnosis) -> Result:
         for one in said["causes"]
     ]
     said["ranking"], said["ruled_out"] = ranked, out
+    differs = said["verdict"] != "none"
+    said["balance"] = sides(found.recordings, said["located"]) if differs else []
     said["paper_guesses"] = guesses(drawn, ranked, out) if ranked else {}
     said["missing"] = missing(found.recordings)
     said["provenance"] = {

@@ -71,6 +71,23 @@ class Experiment(Open):
     separates: list[str]
 
 
+class Residual(Open):
+    """What one of the three residuals sees."""
+
+    residual: Literal["cables", "platform", "inner"]
+    sees: Literal["yes", "no", "cannot tell"]
+    where: list[str] = Field(description="rows that stand out; empty where it sees nothing")
+    sigmas: float = Field(ge=0.0, description="of the row that stands out most")
+
+
+class Balance(Open):
+    """The three residuals of one run."""
+
+    run: str
+    residuals: list[Residual]
+    means: str
+
+
 class Statement(Open):
     """A diagnosis."""
 
@@ -80,6 +97,9 @@ class Statement(Open):
     fit: Fit
     next_experiment: Experiment | None
     improved_rig: str | None
+    balance: list[Balance] = Field(
+        default=[], description="runs that tell on which side it is; empty where none can"
+    )
 
 
 def statement_schema() -> dict[str, Any]:

@@ -15,6 +15,12 @@ Statement = Mapping[str, Any]
 MOST_ROWS = 8
 """Hypotheses in the table of what was ruled out."""
 
+RESIDUALS = {
+    "cables": "tension of each cable beyond k ΔL",
+    "platform": "forces on the platform that do not balance",
+    "inner": "tensions that cancel on the platform",
+}
+
 PARTS = {"used": "data used", "held_out": "held out"}
 
 
@@ -51,8 +57,8 @@ class Rows:
 
 def tables(said: Statement) -> list[Rows]:
     """All tables of a statement that have rows."""
-    found = (causes(said), located(said) if not said.get("ranking") else None, rivals(said),
-             fit(said), parameters(said), campaign(said))  # fmt: skip
+    found = (causes(said), located(said) if not said.get("ranking") else None, balance(said),
+             rivals(said), fit(said), parameters(said), campaign(said))  # fmt: skip
     return [one for one in found if one is not None and one.rows]
 
 
@@ -115,6 +121,26 @@ def located(said: Statement, most: int = 15) -> Rows:
         "where recording and simulation differ",
         ("run", "channel", "stretch", "line", "in phase", "quadrature", "unit", "sigmas"),
         (False, False, False, True, True, True, False, True),
+        tuple(rows),
+    )
+
+
+def balance(said: Statement) -> Rows:
+    """Which of the three residuals sees the mismatch."""
+    runs = said.get("balance") or []
+    several = len(runs) > 1
+    rows = []
+    for run in runs:
+        for one in run["residuals"]:
+            where = [] if one["residual"] == "inner" else one["where"]
+            short_ = [name.removeprefix("cable ") for name in where]
+            row = (RESIDUALS[one["residual"]], one["sees"], listed(short_), f"{one['sigmas']:.3g}")
+            rows.append((run["run"], *row) if several else row)
+    columns = ("residual", "sees it", "where", "sigmas")
+    return Rows(
+        "which residual sees it",
+        ("run", *columns) if several else columns,
+        (*[False] * (len(columns) - (not several)), True),
         tuple(rows),
     )
 

@@ -22,6 +22,8 @@ FAR_FROM_NOISE = 3.0
 MOVED_SIGMAS = 2.0
 """A parameter that moved further than this is told."""
 
+SIDE = "On which side it is"
+
 KINDS = {"tension": "tensions", "pose": "poses"}
 
 Statement = Mapping[str, Any]
@@ -37,6 +39,7 @@ def sections(said: Statement) -> list[tuple[str, str]]:
     """The paragraph and what belongs beside it: (heading, text), those with nothing left out."""
     found = [
         ("What was found", paragraph(said)),
+        (SIDE, on_which_side(said)),
         ("What was ruled out", ruled_out(said)),
         ("The paper's own guesses", guesses_in_words(said)),
         ("What would change this verdict", change(said)),
@@ -186,6 +189,16 @@ def _remains(said: Statement) -> list[str]:
         return []
     place = f", strongest in {remains['where']}" if remains.get("where") else ""
     return [f"Something beyond noise and the laws' own uncertainty remains{place}."]
+
+
+def on_which_side(said: Statement) -> str:
+    """What the three residuals say, run by run where they differ; "": nothing."""
+    runs: dict[str, list[str]] = {}
+    for one in said.get("balance") or []:
+        runs.setdefault(one["means"], []).append(one["run"])
+    if len(runs) < 2:
+        return "".join(runs)
+    return " ".join(f"{listed(names)}: {means}" for means, names in runs.items())
 
 
 def ruled_out(said: Statement) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from analysis.diagnosis.figure_story import improved, shown_channel
 from analysis.diagnosis.figure_style import DARK, LIGHT, most_off
 from analysis.diagnosis.figures import Draw, drawn
 from analysis.diagnosis.pictures import Channel, Pictures
@@ -23,6 +24,10 @@ DPI = 130
 COLOURS = 128
 
 CAPTIONS: Mapping[str, str] = {
+    "story": "What was found, at a glance: the mean cycle of the tension that is farthest off for "
+    "its swing, recorded and simulated with nothing left out, and what that misses; where in all "
+    "channels, by harmonic of the drive, it is missed; and the same cycle with the causes in. "
+    "Shaded: what differs from cycle to cycle.",
     "map": "Where recording and simulation differ, in units of the noise of a sample: at each "
     "harmonic of the drive, and over its cycle. White is what noise makes.",
     "loops": "Tension against elongation over a mean cycle: the whole of it for the cable that is "
@@ -114,6 +119,14 @@ def alt_text(name: str, said: Mapping[str, Any], pictures: Pictures | None) -> s
         "speed": "Residual of each tension against the speed of its cable",
         "fit": "Recording and both simulations over time, with residuals,",
     }
+    if kind == "story":
+        own = shown_channel(pictures.of(run, "tension") or channels)
+        after = f" and {_rms(own, 'after'):.2g} {own.unit} after" if pictures.named else ""
+        return (
+            f"{run} in a glance: {channel_name(own.name)} over the mean cycle, off by "
+            f"{_rms(own, 'before'):.2g} {own.unit} rms before{after}; and where all channels are "
+            f"off, by harmonic. {improved(said)}".strip()
+        )
     worst = most_off(pictures.of(run, "tension")) or channels[0]
     return (
         f"{words.get(kind, kind)} of {run}, before and after; {channel_name(worst.name)} is off "

@@ -7,9 +7,18 @@ from typing import Any
 from analysis.diagnosis.figures import drawings
 from analysis.diagnosis.pictures import Pictures
 from analysis.diagnosis.spelling import listed, sentence
-from analysis.diagnosis.tables import Rows, campaign, causes, fit, located, parameters, rivals
+from analysis.diagnosis.tables import (
+    Rows,
+    balance,
+    campaign,
+    causes,
+    fit,
+    located,
+    parameters,
+    rivals,
+)
 from analysis.diagnosis.titles import rival, together
-from analysis.diagnosis.words import headline
+from analysis.diagnosis.words import SIDE, headline
 from analysis.page.figure import alt_text, figure, kind_of
 from analysis.page.gather import Material
 from analysis.page.style import CSS
@@ -18,6 +27,7 @@ SHOWN_CABLES = ("1", "7")
 """The paper's; the others follow."""
 
 HEADINGS: Mapping[str, str] = {
+    "story": "Before, where, after",
     "map": "Where they differ",
     "loops": "Tension against elongation",
     "speed": "Residual against speed",
@@ -26,7 +36,7 @@ HEADINGS: Mapping[str, str] = {
     "fit": "Before and after, over time",
 }
 
-ORDER = ("map", "loops", "speed", "ranking", "improvement", "fit")
+ORDER = ("story", "map", "loops", "speed", "ranking", "improvement", "fit")
 
 # Nothing may be fetched: the page says so itself, and a browser holds it to that.
 _HEAD = """<!doctype html>
@@ -55,10 +65,12 @@ def page(material: Material) -> str:
     said = material.statement
     parts = [_HEAD.format(title=escape(f"{material.name}: diagnosis"), css=CSS)]
     parts.append(_top(material))
+    figures = dict(_figures(said, _first_run(material.pictures, material.name)))
+    parts.append(figures.pop("story", ""))
     parts += _words(said)
     parts.append(_section_5(material.before, material.after))
     parts.append(_block("Causes", _table(causes(said))))
-    parts += _figures(said, _first_run(material.pictures, material.name))
+    parts += figures.values()
     parts.append(_experiment(said))
     parts.append(_block("Numbers", _table(fit(said)) + _table(parameters(said))
                         + _details("All that was located", _table(located(said, 40)))))  # fmt: skip
@@ -87,7 +99,8 @@ def _words(said: Mapping[str, Any]) -> list[str]:
         # The headline stands at the top already.
         text = one["text"].removeprefix(first).strip()
         if text:
-            found.append(_block(one["heading"], f"<p>{escape(text)}</p>"))
+            more = _table(balance(said)) if one["heading"] == SIDE else ""
+            found.append(_block(one["heading"], f"<p>{escape(text)}</p>{more}"))
     return found
 
 
@@ -130,14 +143,15 @@ def _first_run(pictures: Pictures | None, name: str) -> Pictures | None:
     return Pictures(own, tuple(c for c in pictures.channels if c.record in chosen), pictures.named)
 
 
-def _figures(said: Mapping[str, Any], pictures: Pictures | None) -> Iterator[str]:
+def _figures(said: Mapping[str, Any], pictures: Pictures | None) -> Iterator[tuple[str, str]]:
+    """The kind of each figure, and its block."""
     draws = dict(drawings(said, pictures))
     for name in sorted(draws, key=lambda one: ORDER.index(kind_of(one))):
         heading = HEADINGS[kind_of(name)]
         text = figure(name, draws[name], alt_text(name, said, pictures))
         if kind_of(name) == "ranking":
             text += _details("As a table", _table(rivals(said)) + _ruled_out(said))
-        yield _block(heading, text)
+        yield kind_of(name), _block(heading, text)
 
 
 def _ruled_out(said: Mapping[str, Any]) -> str:

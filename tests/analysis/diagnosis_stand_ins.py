@@ -111,6 +111,14 @@ def statement(verdict: str = "explained", causes: Any = None, **changes: Any) ->
         "ranking": ranked,
         "ruled_out": out,
         "paper_guesses": guesses(pictures(), ranked, out),
+        "balance": [
+            {"run": "hand", "means": "Cables 1 and 2 pull otherwise than k ΔL.", "residuals": [
+                {"residual": "cables", "sees": "yes", "where": ["cable 1", "cable 2"],
+                 "sigmas": 27.7},
+                {"residual": "platform", "sees": "no", "where": [], "sigmas": 2.3},
+                {"residual": "inner", "sees": "yes", "where": ["inner 1"], "sigmas": 32.0},
+            ]}
+        ],
         "missing": {"tap": "no run carries a tap"},
         "provenance": {
             "runs": [{"name": "hand", "id": "hand-1", "simulated": True, "reconstruction": None,

@@ -9,13 +9,14 @@ import pytest
 from diagnosis_stand_ins import FRICTION_N, NOISE_N, pictures, result, statement
 
 from analysis.diagnosis.figure_maps import PHASES, by_phase
+from analysis.diagnosis.figure_story import improved, mean_cycle, shown_channel
 from analysis.diagnosis.figure_style import DARK, LIGHT, Look, most_off
 from analysis.diagnosis.figures import drawings, drawn, write_figures
 from analysis.diagnosis.pictures import Pictures
 from analysis.diagnosis.results import read, write
 from cdpr8.errors import DataError
 
-NAMES = ["map", "loops", "speed", "fit", "ranking", "improvement"]
+NAMES = ["story", "map", "loops", "speed", "fit", "ranking", "improvement"]
 
 
 def test_all_of_them_are_there() -> None:
@@ -47,6 +48,43 @@ def test_friction_stands_out_by_phase_as_a_square_and_is_gone_after() -> None:
     stretching = np.cos(2.0 * np.pi * (np.arange(PHASES) + 0.5) / PHASES) > 0.3
     assert before[stretching] == pytest.approx(FRICTION_N / NOISE_N, rel=0.1)
     assert np.abs(by_phase(pictures(), "hand", "after")[0]).max() < 2.0
+
+
+def test_the_story_shows_the_tension_farthest_off_for_its_swing() -> None:
+    first, second = pictures().of("hand", "tension")
+    stiffer = replace(first, recorded=3.0 * first.recorded, before=3.0 * first.recorded + 0.1)
+    assert shown_channel((stiffer, second)).cable == 2
+    assert most_off((stiffer, second)) is not None
+
+
+def test_the_storys_mean_cycle_has_the_friction_and_the_noise_about_it() -> None:
+    one = pictures().of("hand", "tension")[0]
+    run = pictures().record("hand")
+    at, mean, spread = mean_cycle(run, one.t_s, one.recorded - one.before)
+    assert np.all((at > 0.0) & (at < 1.0))
+    sliding = np.cos(2.0 * np.pi * at)
+    assert mean[sliding > 0.3] == pytest.approx(FRICTION_N, abs=0.02)
+    assert mean[sliding < -0.3] == pytest.approx(-FRICTION_N, abs=0.02)
+    assert np.median(spread) == pytest.approx(NOISE_N, rel=0.3)
+
+
+def test_the_storys_numbers_are_those_of_held_out_data_where_there_are_any() -> None:
+    said = statement()
+    assert improved(said) == (
+        "On held-out data, rms residual in units of the noise: tensions 26 → 1.04."
+    )
+    said["fit"]["before"]["held_out"] = {}
+    assert improved(said).startswith("On the data used, ")
+    assert improved(statement("none", [])) == ""
+
+
+def test_a_run_that_does_not_repeat_has_no_story() -> None:
+    own = pictures()
+    still = replace(own.records[0], stretches=own.records[0].stretches[:1])
+    assert not any(
+        name.startswith("story")
+        for name, _ in drawings(statement(), replace(own, records=(still,)))
+    )
 
 
 def test_the_cable_farthest_off_is_the_one_shown() -> None:

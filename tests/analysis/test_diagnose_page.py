@@ -86,10 +86,13 @@ def test_it_needs_nothing_else(written: Path) -> None:
 def test_it_shows_all_that_was_found(written: Path) -> None:
     text = written.read_text(encoding="utf-8")
     headings = re.findall(r"<h2>(.*?)</h2>", text)
-    for wanted in ("What was found", "What was ruled out", "The paper&#x27;s Section 5", "Causes",
+    for wanted in ("Before, where, after", "What was found", "On which side it is",
+                   "What was ruled out", "The paper&#x27;s Section 5", "Causes",
                    "Where they differ", "Tension against elongation", "Rivals", "Before and after",
                    "Next experiment", "Provenance"):  # fmt: skip
         assert wanted in headings
+    assert headings[0] == "Before, where, after"
+    assert "tension of each cable beyond k ΔL" in text
     assert "0.25 ± 0.02 N" in text
     assert "5.70 %" in text
     assert "0.10 %" in text
@@ -135,7 +138,7 @@ def test_light_and_dark_phone_and_screen_have_figures_of_their_own(
                 "return [...document.images].map(i => [i.alt, i.naturalWidth, i.complete,"
                 " i.getBoundingClientRect().width, i.currentSrc.slice(-200)])"
             )
-            assert len(pictures_) == 6
+            assert len(pictures_) == 7
             for alt, natural, complete, wide, _ in pictures_:
                 assert len(alt) > 30
                 assert complete

@@ -57,6 +57,13 @@ def test_friction_at_the_pulleys_is_named(found: Result) -> None:
         assert one["where"]["side"] == "plant"
 
 
+def test_it_is_between_frame_and_force_cells(found: Result) -> None:
+    (told,) = found.statement["balance"]
+    sees = {one["residual"]: one["sees"] for one in told["residuals"]}
+    assert sees == {"cables": "yes", "platform": "no", "inner": "yes"}
+    assert "between frame and force cell" in told["means"]
+
+
 def test_every_cables_friction_is_what_made_it(found: Result) -> None:
     sized = friction_of_cables(found.statement)
     for cable, true in true_friction().items():
@@ -96,6 +103,9 @@ def test_the_json_has_the_keys_of_the_design(found: Result, folder: Path) -> Non
 def test_its_figures_are_drawn(found: Result, folder: Path) -> None:
     assert found.pictures is not None
     written = write_figures(found.statement, found.pictures, folder)
-    assert {"diagnose_map.png", "diagnose_loops.png", "diagnose_ranking.svg"} <= {
-        path.name for path in written
-    }
+    assert {
+        "diagnose_story.png",
+        "diagnose_map.png",
+        "diagnose_loops.png",
+        "diagnose_ranking.svg",
+    } <= {path.name for path in written}
