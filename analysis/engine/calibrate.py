@@ -144,6 +144,7 @@ def calibrate(
         base=base,
         labels=lens.labels,
         used=used,
+        coloured=bool(lens.labels.every.any()),
     )
     return Calibrated(at, features, columns, problem, rotation)
 

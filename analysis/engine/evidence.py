@@ -70,6 +70,9 @@ class Problem:
         What each feature is.
     used
         Which features count, shape (f,).
+    coloured
+        Whether an error of form has the colour of all that a law does, as where every line is
+        looked at; else what the nuisances take back of it is not seen.
     """
 
     residual: Array
@@ -78,6 +81,7 @@ class Problem:
     base: Array
     labels: Labels
     used: NDArray[np.bool_]
+    coloured: bool = False
 
     @cached_property
     def _at_base(self) -> "Frame":
@@ -89,6 +93,8 @@ class Problem:
         What they take back is not seen, however wrong a law is about it; but they cannot follow
         every error of form of what they can follow as a whole.
         """
+        if self.coloured:
+            return done
         left = done - self.nuisance @ self._at_base.absorbed(done)
         return np.asarray(np.hypot(left, FOLLOWED * done))
 
