@@ -1,7 +1,7 @@
 """`analysis challenge`: make runs with concealed physics, diagnose them blind, score."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -25,6 +25,9 @@ def make(
     rivals: Annotated[
         bool, typer.Option(help="find out which effects could be told apart (takes half the time)")
     ] = True,
+    kind: Annotated[
+        Literal["both", "single", "campaign"], typer.Option(help="single runs, campaigns or both")
+    ] = "both",
     workers: Workers = 1,
     scheduler: Scheduler = None,
 ) -> None:
@@ -33,11 +36,14 @@ def make(
     Example: analysis challenge make --n 24 --seed 1 challenge
     """
     _engine_there()
+    from analysis.challenge.draw import KINDS
     from analysis.challenge.make import make as make_all
     from model.jobs import Where
 
+    kinds = KINDS if kind == "both" else (kind,)
+    where = Where(workers, scheduler)
     with progress("making", n) as step:
-        digest = make_all(out, n, seed, rivals=rivals, where=Where(workers, scheduler), step=step)
+        digest = make_all(out, n, seed, rivals=rivals, kinds=kinds, where=where, step=step)
     say(f"{n} cases in {out}; the truth is sealed with SHA-256 {digest}")
 
 

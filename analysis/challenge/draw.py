@@ -18,6 +18,8 @@ from cdpr8.rigfile import Excitation, Rig
 
 Array = NDArray[np.float64]
 
+KINDS = ("single", "campaign")
+
 STRENGTHS = ("limit", "typical", "strong")
 
 CLASHES = (
@@ -66,20 +68,24 @@ class Slot:
         return f"case_{self.number:04d}"
 
 
-def slots(count: int, generator: np.random.Generator) -> list[Slot]:
+def slots(count: int, generator: np.random.Generator, kinds: Sequence[str] = KINDS) -> list[Slot]:
     """What each case is to be: every effect and strength about as often, in no order.
 
     Parameters
     ----------
     count
-        Of cases: half single runs, half campaigns; a quarter of each hold nothing, half one
-        effect, a quarter two.
+        Of cases, as many of each kind; a quarter of each hold nothing, half one effect, a quarter
+        two.
     generator
         Source of the draw.
+    kinds
+        "single" runs, "campaign"s, or both.
     """
     deck = _Deck(sorted(catalogue()), generator)
     plan: list[tuple[str, int]] = []
-    for kind, size in (("single", count - count // 2), ("campaign", count // 2)):
+    sizes = [count - count // len(kinds) * (len(kinds) - 1)]
+    sizes += [count // len(kinds)] * (len(kinds) - 1)
+    for kind, size in zip(kinds, sizes, strict=True):
         none, pairs = round(size / 4), round(size / 4)
         holds = [0] * none + [2] * pairs + [1] * (size - none - pairs)
         plan += [(kind, held) for held in holds]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from analysis.challenge.case import Case
-from analysis.challenge.draw import Slot, draw_case, slots
+from analysis.challenge.draw import KINDS, Slot, draw_case, slots
 from analysis.challenge.plant.concealed import Concealed
 from analysis.challenge.plant.machine import Machine
 from analysis.challenge.plant.record import write
@@ -32,6 +32,7 @@ def make(
     seed: int,
     *,
     rivals: bool = True,
+    kinds: Sequence[str] = KINDS,
     plan: Sequence[Slot] | None = None,
     where: Where = HERE,
     step: Callable[[], None] = lambda: None,
@@ -48,6 +49,8 @@ def make(
         All its randomness.
     rivals
         Whether to find out which effects could be told from those concealed: half of the time.
+    kinds
+        "single" runs, "campaign"s, or both.
     plan
         What each case is to be; default: drawn, every effect and strength about as often.
     where
@@ -72,7 +75,7 @@ def make(
         )
     folder.mkdir(parents=True, exist_ok=True)
     if plan is None:
-        plan = slots(count, np.random.default_rng(np.random.SeedSequence(seed)))
+        plan = slots(count, np.random.default_rng(np.random.SeedSequence(seed)), kinds)
     jobs = [vars(slot) for slot in plan]
     version = metadata.version("cdpr8")
     rows = {}

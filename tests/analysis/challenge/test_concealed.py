@@ -1,4 +1,4 @@
-"""The diagnosis itself on runs of the independent plant, what they conceal told to the test only."""
+"""The diagnosis itself on runs of the independent plant: it is not told what they conceal."""
 
 from pathlib import Path
 
