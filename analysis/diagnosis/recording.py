@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.lens import RESONANT, resonant
 from analysis.engine.system import Bundle, Segment
+from analysis.engine.tones import RESONANT, resonant
 from analysis.series import measured_cables
 from cdpr8.errors import DataError
 from cdpr8.rigfile import Rig

@@ -9,16 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.evidence import (
-    Frame,
-    Problem,
-    base_variance,
-    directions,
-    form_variance,
-)
+from analysis.engine.evidence import Frame, Problem, directions
 from analysis.engine.lens import Lens
 from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
 from analysis.engine.system import Array, Point, System
+from analysis.engine.variance import base_variance, form_variance
 
 ROUNDS = 6
 """Steps, at most."""

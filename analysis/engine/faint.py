@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.engine.calibrate import Calibrated
-from analysis.engine.evidence import SPREAD, Problem, directions
+from analysis.engine.evidence import Problem, directions
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.lens import Labels
 from analysis.engine.refine import Fitted, Refiner
@@ -22,6 +22,7 @@ from analysis.engine.screen import Scored, Screen, grouped, groups
 from analysis.engine.sensitivity import BATCH, Columns, Progress
 from analysis.engine.state import State
 from analysis.engine.system import Array, Candidate, Point, Prediction, Setting, System
+from analysis.engine.variance import SPREAD
 
 PROMISING = 3.0
 """Without the ring, parameters must leave no more than this of the squared misfit, a feature."""
@@ -34,6 +35,9 @@ SMALL = 0.03
 
 UNEXPLAINED = 0.2
 """Of what nothing explains, this share may lie where candidates are looked for."""
+
+FARTHEST = 1e12
+"""A change larger than this, in units of noise for one unit of a term, is none."""
 
 FORMS = 20
 """An error of form lies in few directions, and in which is not known: in each it may be as large as
@@ -115,7 +119,9 @@ def faint(system: System, calibrated: Calibrated, progress: Progress | None = No
         rows += [here - one for one in system.simulate(points[first : first + BATCH], residual)]
         if progress is not None:
             progress(len(rows), len(points))
-    changes = np.nan_to_num(np.stack(rows) / np.array(scales)[:, None])
+    # A simulation that came to nothing tells nothing.
+    changes = np.stack(rows) / np.array(scales)[:, None]
+    changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     inside, residual_inside, noise = _compressed(changes, here)
     count, size = len(steps), len(residual_inside)
     nuisance = inside[:, :count]

@@ -5,9 +5,10 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
-from analysis.engine.evidence import Frame, Problem, bounded, directions, form_variance
+from analysis.engine.evidence import Frame, Problem, bounded, directions
 from analysis.engine.lens import Lens
 from analysis.engine.system import Bundle, Segment
+from analysis.engine.variance import form_variance
 
 
 @pytest.fixture
