@@ -168,7 +168,8 @@ def _compressed(changes: Array, residual: Array) -> tuple[Array, Array, float]:
         Shapes (f, k) and (f,), and the variance of noise there: more than one where the residual
         holds what nothing spans.
     """
-    norms = np.maximum(np.linalg.norm(changes, axis=1), 1e-300)
+    norms = np.linalg.norm(changes, axis=1)
+    norms[norms == 0.0] = 1.0
     values, vectors = np.linalg.eigh((changes @ changes.T) / np.outer(norms, norms))
     kept = values > INDEPENDENT * values[-1]
     roots, vectors = np.sqrt(values[kept]), vectors[:, kept]

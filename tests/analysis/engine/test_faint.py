@@ -1,0 +1,28 @@
+"""Faint causes: what changes span, in few directions."""
+
+import numpy as np
+import pytest
+
+from analysis.engine.faint import _compressed
+
+
+def test_the_span_keeps_every_product_and_noise_alone_has_its_own_variance() -> None:
+    generator = np.random.default_rng(3)
+    changes = generator.normal(size=(6, 400))
+    changes[4] = changes[0] - 2.0 * changes[1]
+    changes[5] = 0.0
+    residual = 3.0 * changes[2] + generator.normal(size=400)
+    inside, seen, noise = _compressed(changes, residual)
+    assert inside.shape == (4, 6), "one change is others together, and one is nothing"
+    assert inside.T @ inside == pytest.approx(changes @ changes.T, abs=1e-6)
+    assert inside.T @ seen == pytest.approx(changes @ residual, abs=1e-6)
+    assert noise < 3.0
+
+
+def test_what_nothing_spans_makes_everything_less_certain() -> None:
+    generator = np.random.default_rng(4)
+    changes = generator.normal(size=(5, 400))
+    noise = generator.normal(size=400)
+    _, _, quiet = _compressed(changes, noise)
+    _, _, loud = _compressed(changes, 2.0 * noise)
+    assert loud > 10.0 * quiet
