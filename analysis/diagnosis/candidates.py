@@ -72,6 +72,11 @@ FRICTION = "friction at the pulleys"
 FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_presliding")
 """Laws of one thing: two of them at once are rather one law that is none of these."""
 
+DRAG = "drag on the platform"
+DRAGS = ("platform_damping", "air_drag")
+
+FAMILIES = dict.fromkeys(FRICTIONS, FRICTION) | dict.fromkeys(DRAGS, DRAG)
+
 SHARPEST = 3.0
 """Presliding this many times shorter than it is screened at is Coulomb's law."""
 
@@ -139,7 +144,7 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
         shareable=len(magnitudes) == 1,
         combinations=wholes,
         chosen_terms=4 if effect.name == "geometry" else 0,
-        family=FRICTION if effect.name in FRICTIONS else "",
+        family=FAMILIES.get(effect.name, ""),
     )
 
 

@@ -36,6 +36,10 @@ SMALL = 0.03
 UNEXPLAINED = 0.2
 """Of what nothing explains, this share may lie where candidates are looked for."""
 
+RESTARTS = 3
+"""Nothing is led to the phase once more from where so many hypotheses have come: one may have found
+a way that nothing missed."""
+
 FARTHEST = 1e12
 """A change larger than this, in units of noise for one unit of a term, is none."""
 
@@ -235,7 +239,15 @@ def faint_search(
             if known is None or one.log_score > known.log_score:
                 pairs[one.hypothesis.names] = one
     best = sorted(pairs.values(), key=lambda one: -one.log_score)[:PAIRS]
-    fitted = [_fitted(found, refiner, one) for one in (null, *singles[:SINGLES], *best)]
+    kept = singles[:SINGLES]
+    kin = {chosen[name].family for one in kept for name in one.hypothesis.names} - {""}
+    # Laws of one thing stand side by side, however far apart a ring puts them.
+    kept += [
+        one
+        for one in singles[SINGLES:]
+        if any(chosen[name].family in kin for name in one.hypothesis.names)
+    ]
+    fitted = [_fitted(found, refiner, one) for one in (null, *kept, *best)]
     return singles, sorted(fitted, key=lambda one: -one.log_score)
 
 
@@ -270,7 +282,9 @@ def followed_each(
     led = [
         follow_ring(system, one.point.nuisance, one.state, everything=True) for one in hypotheses
     ]
-    for one in (*led, found.followed):
+    nothing = [found.followed, *(follow_ring(system, _parameters_of(system, one), everything=True,
+                                             near=True) for one in led[:RESTARTS])]  # fmt: skip
+    for one in (*led, *nothing):
         (left,) = system.simulate([one.point], residual)
         least = min(least, float(np.mean(left**2)))
         state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
@@ -281,12 +295,25 @@ def followed_each(
     names = fitted[int(np.argmin(misfits))].hypothesis.names
     form = max((refiner.candidates[name].form_share for name in names), default=0.0)
     # What the best explains it explains but for its error of form, and so does every other.
-    noise = 1.0 + form**2 * (misfits[-1] - min(misfits)) / FORMS
+    least_nothing = min(misfits[len(led) :])
+    noise = 1.0 + form**2 * (least_nothing - min(misfits)) / FORMS
     scored = [
         replace(one, log_score=one.hypothesis.log_prior(refiner.candidates) - 0.5 * misfit / noise)
         for one, misfit in zip(fitted, misfits, strict=True)
     ]
-    return sorted(scored, key=lambda one: -one.log_score)
+    ordered = sorted(scored, key=lambda one: -one.log_score)
+    nulls = [one for one in ordered if not one.hypothesis.parts]
+    return [one for one in ordered if one not in nulls[1:]]
+
+
+def _parameters_of(system: System, led: Followed) -> Array:
+    """Nuisances that stand for the parameters among what is on, and for nothing else of it."""
+    nuisance = led.nuisance.copy()
+    if led.state is not None:
+        values = led.state.term_values()
+        for i, one in enumerate(system.nuisances):
+            nuisance[i] += values.get((one.cause or "", one.term or ""), 0.0) / one.sigma
+    return nuisance
 
 
 def _best(screen: Screen, candidates: Mapping[str, Candidate], parent: Scored) -> list[Scored]:

@@ -15,11 +15,14 @@ from analysis.engine.sensitivity import BATCH
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Prediction, System
 
-WINDOWS = (0.25, 0.4, 0.7, 1.0)
+WINDOWS = (0.15, 0.25, 0.4, 0.6, 0.8, 1.0, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
 
-WINDOWS_OF_MANY = (0.4, 1.0)
+WINDOWS_OF_MANY = (0.4, 1.0, 1.0)
 """The same for several recordings, which know the parameters better."""
+
+THERE = 1.02
+"""A squared misfit of a sample below this, on average, needs no further step."""
 
 STEP = 0.02
 """Of the difference that tells what a parameter does, in sigmas: longer ones turn the phase."""
@@ -88,6 +91,7 @@ def follow_ring(
     *,
     held: str = "",
     everything: bool = False,
+    near: bool = False,
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -101,15 +105,18 @@ def follow_ring(
         A recording that is kept back, but for its rest.
     everything
         Use what is kept back, too; what is sealed never is.
+    near
+        The phase is near enough for the whole of the time at once.
     """
     best = Followed(nuisance, state)
     many = len({bundle.record for bundle in system.bundles}) > 1
-    for share in WINDOWS_OF_MANY if many else WINDOWS:
+    windows = WINDOWS_OF_MANY if many else WINDOWS
+    for share in windows[-2:] if near else windows:
         mask = [seen(one, share=share, held=held, everything=everything) for one in system.bundles]
         moved = _step(system, best, mask)
-        if moved is None:
+        if moved is None and share == 1.0:
             break
-        best = moved
+        best = moved or best
     return best
 
 
@@ -121,7 +128,7 @@ def _step(system: System, start: Followed, mask: Mask) -> Followed | None:
 
     at = start.nuisance
     (here,) = system.simulate([start.point], residual)
-    if float(here @ here) > LOST * len(here):
+    if not THERE * len(here) < float(here @ here) < LOST * len(here):
         return None
     points, steps = start.neighbours()
     rows: list[Array] = []

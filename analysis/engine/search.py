@@ -172,7 +172,14 @@ def search(
     ranked = finder.ranked()
     if about is not None and len({one.record for one in system.bundles}) <= MOST_FOLLOWED:
         likely = [one for one in ranked if one.hypothesis.parts][:FOLLOWED]
-        tried = {one.hypothesis.names: one for one in (*ringing, *likely)}
+        kin = {candidates[n].family for one in (*ringing, *likely) for n in one.hypothesis.names}
+        related = [
+            one
+            for one in ranked
+            if len(one.hypothesis.parts) == 1
+            and candidates[one.hypothesis.names[0]].family in kin - {""}
+        ]
+        tried = {one.hypothesis.names: one for one in (*ringing, *related, *likely)}
         rung = followed_each(about, refiner, list(tried.values()))
         if rung is not None:
             return Search(
