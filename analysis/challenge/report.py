@@ -44,8 +44,8 @@ def report(score: Score, took_s: float | None = None, remark: str = "") -> str:
         f"{len(score.grades)} cases, {done} diagnosed; seed {score.seed}, version {score.version}, "
         f"{total / 3600.0:.1f} h of diagnosis (median {median or 'none'}). Sealed truth: SHA-256 "
         f"`{score.digest}`.",
-        f"Again: `analysis challenge make --n {len(score.grades)} --seed {score.seed} OUT`, then "
-        "`run OUT` and `score OUT`.",
+        f"Again: `analysis challenge make --n {len(score.grades)} --seed {score.seed}"
+        f"{_options(score)} OUT`, then `run OUT` and `score OUT`.",
         remark,
         "## Figures\n\nWith 95 % intervals (Wilson for shares, bootstrap over cases for the rest). "
         "A bar is met where the interval does not exclude it.",
@@ -60,6 +60,16 @@ def report(score: Score, took_s: float | None = None, remark: str = "") -> str:
         failures_table(score),
     ]
     return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
+
+
+def _options(score: Score) -> str:
+    """Those of `make` that are not as usual."""
+    kinds = {one.kind for one in score.grades}
+    options = f" --kind {kinds.pop()}" if len(kinds) == 1 else ""
+    effects = [effect for one in score.grades for effect in one.truth]
+    if effects and all(effect["separable"] is None for effect in effects):
+        options += " --no-rivals"
+    return options
 
 
 def table(rows: tuple[Row, ...]) -> str:
