@@ -57,6 +57,15 @@ class Row:
             return None
         return self.high >= self.bar if self.at_least else self.low <= self.bar
 
+    @property
+    def word(self) -> str:
+        """"met", "open" where the figure misses the bar and its interval does not, "not met"."""
+        if self.value is None:
+            return ""
+        if self.value >= self.bar if self.at_least else self.value <= self.bar:
+            return "met"
+        return "open" if self.met else "not met"
+
 
 def rows(grades: Sequence[Grade], seed: int = 0) -> list[Row]:
     """Every figure, for single runs and for campaigns.

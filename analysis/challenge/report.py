@@ -48,7 +48,7 @@ def report(score: Score, took_s: float | None = None, remark: str = "") -> str:
         f"{_options(score)} OUT`, then `run OUT` and `score OUT`.",
         remark,
         "## Figures\n\nWith 95 % intervals (Wilson for shares, bootstrap over cases for the rest). "
-        "A bar is met where the interval does not exclude it.",
+        "`open`: the figure misses its bar, and its interval does not.",
         table(score.rows),
         "## What can be found, and how small\n\n`can be seen from`: the size that stands out of "
         "the noise by 6 (numbers of the machine: 3 sigma) after what the machine's own numbers can "
@@ -93,7 +93,7 @@ def cells_of(row: Row) -> tuple[str, str, str]:
         return "no case", shown(row.bar, row.percent), ""
     value, low, high = (shown(x, row.percent) for x in (row.value, row.low, row.high))
     sign = ">=" if row.at_least else "<="
-    verdict = "met" if row.met else "**not met**"
+    verdict = f"**{row.word}**" if row.word == "not met" else row.word
     return f"{value} ({low} to {high}; {row.of})", f"{sign} {shown(row.bar, row.percent)}", verdict
 
 
