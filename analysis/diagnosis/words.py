@@ -13,6 +13,9 @@ from analysis.diagnosis.phrases import phrase
 from analysis.diagnosis.spelling import listed, odds, percent, sentence
 from analysis.diagnosis.titles import parameter_name, short
 
+RULED_OUT = 3.0
+"""Logarithm of odds, 20 to 1."""
+
 TOLD_RIVALS = 4
 """Rivals that are named in a sentence."""
 
@@ -206,7 +209,7 @@ def ruled_out(said: Statement) -> str:
     out = said.get("ruled_out") or []
     if said["verdict"] in ("not asked", "") or not out:
         return ""
-    fitted = [one for one in out if one["how"] != "screened"]
+    fitted = [one for one in out if one["how"] != "screened" and -one["log_odds"] > RULED_OUT]
     texts = []
     null = next((-one["log_odds"] for one in said.get("ranking", []) if not one["effects"]), None)
     if said["causes"] and null is not None:
@@ -221,7 +224,11 @@ def ruled_out(said: Statement) -> str:
     if beside:
         parts = [f"{short(one['effect'])} {odds(-one['log_odds'])}" for one in beside[:TOLD_RIVALS]]
         texts.append(f"Nothing more is asked for beside it; odds against: {listed(parts)}.")
-    count = len(out) - len(instead) - len(beside)
+    near = [one for one in out if one["how"] != "screened" and one not in fitted]
+    if near:
+        names = listed([short(one["effect"]) for one in near[:TOLD_RIVALS]])
+        texts.append(f"Not ruled out as a part of it, though nothing asks for it: {names}.")
+    count = sum(one["how"] == "screened" for one in out)
     if count:
         what = "effects" if count > 1 else "effect"
         texts.append(f"{count} more {what} of the library fell out in screening.")
