@@ -59,7 +59,7 @@ class Row:
 
     @property
     def word(self) -> str:
-        """ "met", "open" where the figure misses the bar and its interval does not, "not met"."""
+        """How it stands: met, not met, or open where its interval alone reaches the bar."""
         if self.value is None:
             return ""
         if self.value >= self.bar if self.at_least else self.value <= self.bar:

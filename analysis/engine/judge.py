@@ -35,11 +35,11 @@ NEGLIGIBLE = 0.02
 SECOND = 0.8
 """A cause beside the first is reported if it is present with this probability."""
 
+IMPLAUSIBLE = 4.0
+"""What a number at the edge of its plausible range costs, as a logarithm of odds."""
+
 CERTAIN = 0.9
 """A cause named alone is at least this likely."""
-
-FAR_SIGMAS = 3.0
-"""A parameter that moved further than this from its prior is a finding, not a refinement."""
 
 
 @dataclass(frozen=True)
@@ -137,10 +137,6 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
     logs = (scores - scores.max()) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
-    total: dict[str, float] = defaultdict(float)
-    for one, weight in zip(fitted, weights, strict=True):
-        for name in one.hypothesis.names:
-            total[name] += float(weight)
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )
@@ -198,10 +194,6 @@ def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> bool:
 def _plausible_score(fitted: Fitted) -> float:
     """A better fit with an implausible number counts for less."""
     return fitted.log_score - IMPLAUSIBLE * len(fitted.at_limit)
-
-
-IMPLAUSIBLE = 4.0
-"""What a number at the edge of its plausible range costs, as a logarithm of odds."""
 
 
 def _cause(name: str, chosen: Fitted, fitted: Sequence[Fitted], weights: Array) -> Cause:

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from analysis.engine.calibrate import Calibrated, calibrate
-from analysis.engine.faint import FAINT, faint, faint_search, followed_each
+from analysis.engine.faint import FAINT, faint
+from analysis.engine.faint_search import faint_search, followed_each
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Fitted, Refiner
 from analysis.engine.screen import Scored, Screen
