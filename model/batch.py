@@ -16,7 +16,7 @@ from model.library.lanes import LANES, PLATFORM, WORK
 from model.library.selection import ActiveEffect
 from model.method import Method, find_method
 from model.simulation import Simulation
-from model.simulator import as_simulation
+from model.simulator import as_simulation, run
 from model.steps import Steps, steps_a_row
 from model.task import Task
 from model.trajectory import Trajectory, blow_up_limits, rows_inside
@@ -36,6 +36,7 @@ def simulate_many(
     step_s: float | None = None,
     output_rate_hz: float = 1000.0,
     announce: Announce | None = None,
+    fewest: int = 1,
 ) -> list[Any]:
     """Simulate many tasks, sixteen side by side.
 
@@ -51,6 +52,9 @@ def simulate_many(
         sixteen are held at a time.
     method, step_s, output_rate_hz, announce
         As for `model.simulate`. Tasks whose default steps differ do not run together.
+    fewest
+        Where fewer than this can run together, they run one by one: lanes that stay empty cost as
+        much as those that do not, some eight simulations.
 
     Returns
     -------
@@ -60,6 +64,11 @@ def simulate_many(
     scheme = find_method(method)
     results: list[Any] = [None] * len(tasks)
     for places in _groups(tasks, scheme, output_rate_hz, step_s):
+        if len(places) < fewest:
+            for place in places:
+                simulation = run(tasks[place], method, step_s, output_rate_hz, announce)
+                results[place] = simulation if reduce is None else reduce(simulation)
+            continue
         for place, simulation in _run(
             [tasks[place] for place in places], places, scheme, output_rate_hz, step_s, announce
         ):
@@ -206,16 +215,19 @@ def _numbers(lanes: _Lanes) -> Array:
 
 def _drives(lanes: _Lanes, method: Method, steps: Steps) -> Iterator[tuple[slice, Array]]:
     """The drives' tables, part by part: one for all lanes that share it, else each its own."""
-    keys = {task.drive_key(method, steps) for task in lanes.tasks}
+    keys = [task.drive_key(method, steps) for task in lanes.tasks]
+    different = dict(zip(keys, lanes.tasks, strict=True))
     whole = steps.step_s.size
-    if len(keys) == 1:
+    if len(different) == 1:
         yield slice(0, whole), lanes.tasks[0].drive_at_stages(method, steps)[..., None]
         return
+    places = {key: place for place, key in enumerate(different)}
+    drive_of_lane = [places[key] for key in keys]
     stage_s, middle_s = steps.stage_s(method.nodes), steps.middle_s
     for first in range(0, whole, CHUNK_STEPS):
         part = slice(first, min(first + CHUNK_STEPS, whole))
-        tables = [task.drive_at(stage_s[part], middle_s[part]) for task in lanes.tasks]
-        yield part, np.ascontiguousarray(np.stack(tables, axis=-1))
+        tables = [task.drive_at(stage_s[part], middle_s[part]) for task in different.values()]
+        yield part, np.stack([tables[place] for place in drive_of_lane], axis=-1)
 
 
 def _drive_at_outputs(lanes: _Lanes, steps: Steps) -> Array:

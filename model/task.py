@@ -270,15 +270,16 @@ class DriveKey:
     method: str
     kind: str
 
+    @cached_property
     def _value(self) -> tuple[object, ...]:
         numbers = b"".join(np.ascontiguousarray(one).tobytes() for one in self.machine.plant())
         return numbers, self.motion, self.steps.point_s.tobytes(), self.method, self.kind
 
     def __hash__(self) -> int:
-        return hash(self._value())
+        return hash(self._value)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, DriveKey) and self._value() == other._value()
+        return isinstance(other, DriveKey) and self._value == other._value
 
 
 @lru_cache(maxsize=4)

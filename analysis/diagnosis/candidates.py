@@ -97,7 +97,6 @@ def candidates(
     frame_hz
         Of the camera.
     """
-    del frame_hz
     chosen = library() if names is None else {name: library()[name] for name in names}
     found = []
     for name, effect in chosen.items():
@@ -108,7 +107,7 @@ def candidates(
         elif name == "cell_saturation":
             found.append(_saturation(effect))
         elif name == "frames_dropped":
-            found.append(_dropped(effect, times_s))
+            found.append(_dropped(effect, times_s, frame_hz))
         else:
             found.append(_plain(effect, POLICIES.get(name, Policy())))
     return tuple(found)
@@ -194,14 +193,17 @@ def _saturation(effect: Effect) -> Candidate:
     return Candidate(effect.name, effect.title, effect.acts.side, terms, (), 0.1, shareable=False)
 
 
-def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]]) -> Candidate:
+def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]], frame_hz: float) -> Candidate:
     term = Term("frames", "frames", "1", "", 0.0, 3.0, 1.0)
     count = Shape("count", "1", 1.0, 1.0, 3.0, (1.0, 2.0, 3.0), logarithmic=False, whole=True)
     moments: list[float] = []
     for i, (start, end) in enumerate(times_s):
         spacing = 0.25 if len(times_s) == 1 else 0.5
         moments += [1000.0 * i + at for at in np.arange(start + 0.25, end - 0.1, spacing)]
-    when = Shape("moment", "s", moments[0], 0.0, 1e5, tuple(moments), logarithmic=False, whole=True)
+    when = Shape(
+        "moment", "s", moments[0], 0.0, 1e5, tuple(moments),
+        logarithmic=False, whole=True, finest=0.5 / frame_hz,
+    )  # fmt: skip
     return Candidate(effect.name, effect.title, effect.acts.side, (term,), (count, when), NUMBER,
                      fixed=True)  # fmt: skip
 

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 OUTPUT_HZ = 500.0
 """Rows a second: 20 times faster than what the lens looks at."""
 
-LANES_FROM = 6
+LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
 
 GROUP = 16
@@ -216,9 +216,8 @@ class RecordedMachine:
         parts = [keys[first : first + size] for first in range(0, count, size)]
 
         def solve(part: list[Any]) -> list[Simulation]:
-            if len(part) < LANES_FROM:
-                return [simulate_task(tasks[key], output_rate_hz=OUTPUT_HZ) for key in part]
-            return simulate_many([tasks[key] for key in part], output_rate_hz=OUTPUT_HZ)
+            own = [tasks[key] for key in part]
+            return simulate_many(own, output_rate_hz=OUTPUT_HZ, fewest=LANES_FROM)
 
         if self._workers == 1 or len(parts) == 1:
             solved = [solve(part) for part in parts]

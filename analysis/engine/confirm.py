@@ -54,7 +54,10 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     records = list(dict.fromkeys(bundle.record for bundle in bundles))
     sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
     held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
-    before = _errors(search.system, search.calibrated.at, None, held)
+    start = search.calibrated.at
+    if search.faint:
+        start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
+    before = _errors(search.system, start, None, held)
     after = before
     if chosen.hypothesis.parts:
         again = chosen

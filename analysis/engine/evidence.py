@@ -2,7 +2,7 @@
 
 The true law is never quite the library's. What a candidate does to a feature is therefore
 uncertain by a share of itself, more so at high harmonics; and how large that share is, is itself
-not known: the evidence is averaged over three sizes of it. All other parameters are marginalised
+not known: the evidence is averaged over several sizes of it. All other parameters are marginalised
 over their priors, to first order about where the residual was simulated.
 """
 
@@ -18,10 +18,11 @@ from analysis.engine.lens import Labels
 from analysis.engine.system import Array
 from analysis.engine.variance import form_variance
 
-FORM_SIZES = (0.3, 1.0, 3.0)
-"""Sizes of the error of form that are averaged over, relative to what a candidate states."""
+FORM_SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)
+"""Sizes of the error of form that are averaged over, relative to what a candidate states: some laws
+are the true one, and what they do may be a thousand times the noise."""
 
-FORM_WEIGHTS = (0.35, 0.4, 0.25)
+FORM_WEIGHTS = (0.1, 0.15, 0.25, 0.3, 0.2)
 
 UNSEEN = 0.1
 """A direction of the nuisances that does less than this, in units of noise, is not seen."""
@@ -95,6 +96,8 @@ class Weighed:
         Of the features at the likeliest size, shape (f,).
     gains
         For each column, by how much chi2 would rise without it alone, shape (k,).
+    gain
+        By how much chi2 would fall, were the factors added.
     """
 
     log_evidence: float
@@ -104,6 +107,7 @@ class Weighed:
     chi2: float
     variance: Array
     gains: Array
+    gain: float
 
 
 class Frame:
@@ -241,11 +245,11 @@ def weigh(
         gain = float(2.0 * right @ estimate - estimate @ matrix @ estimate)
         chi2 -= gain
         logs.append(-0.5 * (chi2 + (gain if standing else 0.0) + frame.log_determinant))
-        kept.append((estimate, matrix, frame, chi2, variance))
+        kept.append((estimate, matrix, frame, chi2, variance, gain))
     weights = FORM_WEIGHTS if len(logs) == len(FORM_WEIGHTS) else (1.0,) * len(logs)
     best = int(np.argmax(np.array(logs) + np.log(weights)))
     log_evidence = float(np.logaddexp.reduce(np.array(logs) + np.log(weights)))
-    estimate, matrix, frame, chi2, variance = kept[best]
+    estimate, matrix, frame, chi2, variance, gain = kept[best]
     covariance: Array = np.asarray(np.linalg.pinv(matrix), dtype=float) if matrix.size else matrix
     variances = np.maximum(np.diag(covariance), 1e-300) if matrix.size else np.zeros(0)
     return Weighed(
@@ -256,6 +260,7 @@ def weigh(
         chi2=chi2,
         variance=variance,
         gains=estimate**2 / variances,
+        gain=gain,
     )
 
 

@@ -1,10 +1,10 @@
 """Faint causes: told by every sample, ring and all, in straight lines about the followed ring.
 
-Where parameters alone lead a simulation to within little more than the noise of every sample, what
-was left out can only be small: everything is then in proportion, and a ring is no nuisance but the
-best witness, for it tells stiffness, mass and damping far closer than the driven motion does. All
-that recording, parameters and candidates span is brought into some hundred orthonormal directions;
-white noise stays white in them.
+Where a simulation has been led to within little more than the noise of every sample, over all of
+the time or the first part of it, what is left out there can only be small: everything is then in
+proportion, and a ring is no nuisance but the best witness, for it tells stiffness, mass and damping
+far closer than the driven motion does. All that recording, parameters and candidates span is
+brought into some hundred orthonormal directions; white noise stays white in them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,19 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.engine.calibrate import Calibrated
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.lens import Labels
-from analysis.engine.ring_fit import LOST, Followed, follow_ring, residuals, seen
+from analysis.engine.ring_fit import Followed, Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
-from analysis.engine.system import Array, Candidate, Point, Prediction, Setting, System
+from analysis.engine.system import Array, Candidate, Point, Setting, System
 from analysis.engine.variance import SPREAD
-
-PROMISING = 3.0
-"""Without the ring, parameters must leave no more than this of the squared misfit, a feature."""
-
-FAINT = 1.5
-"""With it, no more than this, a sample; more is not faint, and not in straight lines."""
 
 SMALL = 0.03
 """Of the size that a term is screened at, what tells how it changes the samples."""
@@ -50,77 +43,78 @@ class Faint:
     Attributes
     ----------
     followed
-        Parameters that ring in the recording's phase.
+        Numbers that ring in the recording's phase.
     problem
         What is left to explain there.
     terms
         (candidate, variant) -> what one unit of each term does, shape (f, k).
+    own
+        Candidate that is on -> what its free numbers do, shape (f, k).
     rotation
         Nuisances of directions, shape (nuisances, p).
-    left
-        Squared misfit of a sample, on average.
     """
 
     followed: Followed
     problem: Problem
     terms: Columns
+    own: Mapping[str, Array]
     rotation: Array
-    left: float
 
 
-def faint(system: System, calibrated: Calibrated, progress: Progress | None = None) -> Faint | None:
-    """Follow the ring with nothing on; None where there is none, or its phase is lost.
+def faint(
+    system: System,
+    followed: Followed,
+    candidates: Sequence[Candidate],
+    progress: Progress | None = None,
+) -> Faint:
+    """What could still be there, as far as the ring was followed.
 
     Parameters
     ----------
     system
         What is simulated.
-    calibrated
-        Its likeliest parameters.
+    followed
+        About where.
+    candidates
+        What to look for; those that are on are not among them.
     progress
         Told of it.
     """
-    problem = calibrated.problem
-    misfit = float(np.mean((problem.residual**2 / problem.base)[problem.used]))
-    if misfit > PROMISING or not any(bundle.tones_hz for bundle in system.bundles):
-        return None
-    followed = follow_ring(system, calibrated.at, everything=True)
-    mask = [seen(bundle, everything=True) for bundle in system.bundles]
-
-    def residual(prediction: Prediction) -> Array:
-        return residuals(system.bundles, prediction, mask)
-
-    (here,) = system.simulate([followed.point], residual)
-    left = float(np.mean(here**2))
-    if left > LOST:
-        return None
+    samples = Samples(system, everything=True, share=followed.share)
+    (here,) = samples.residuals([followed.point])
     points, steps = followed.neighbours()
+    numbers, count = len(steps), len(followed.nuisance)
     places: list[tuple[str, int, int]] = []
     scales = list(steps)
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
-    candidates = [one for one in system.candidates if not one.fixed]
+    on = followed.point.effects
     for candidate in candidates:
         for v, shapes in enumerate(candidate.variants()):
             for k, term in enumerate(candidate.terms):
                 if (candidate.name, term.name) not in same:
                     setting = Setting({term.name: SMALL * term.step}, shapes)
-                    points.append(Point(followed.nuisance, {candidate.name: setting}, "as_is"))
+                    effects = {**on, candidate.name: setting}
+                    points.append(Point(followed.nuisance, effects, "as_is"))
                     places.append((candidate.name, v, k))
                     scales.append(SMALL * term.step)
     rows: list[Array] = []
     for first in range(0, len(points), BATCH):
-        rows += [here - one for one in system.simulate(points[first : first + BATCH], residual)]
+        rows += [here - one for one in samples.residuals(points[first : first + BATCH])]
         if progress is not None:
             progress(len(rows), len(points))
     # A simulation that came to nothing tells nothing.
     changes = np.stack(rows) / np.array(scales)[:, None]
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     inside, residual_inside, noise = _compressed(changes, here)
-    count, size = len(steps), len(residual_inside)
+    size = len(residual_inside)
     nuisance = inside[:, :count]
     terms = _terms(candidates, nuisance / [one.sigma for one in system.nuisances], same)
     for place, (name, v, k) in enumerate(places):
-        terms[name, v][:, k] = inside[:, count + place]
+        terms[name, v][:, k] = inside[:, numbers + place]
+    own: dict[str, Array] = {}
+    if followed.state is not None:
+        for name in followed.state.hypothesis.names:
+            own[name] = inside[:, [count + k for k in followed.state.places(name)]]
     used, base = np.ones(size, dtype=bool), np.full(size, noise)
     rotation = directions(nuisance, base, used)
     problem = Problem(
@@ -131,7 +125,7 @@ def faint(system: System, calibrated: Calibrated, progress: Progress | None = No
         labels=_labels(size),
         used=used,
     )
-    return Faint(followed, problem, terms, rotation, left)
+    return Faint(followed, problem, terms, own, rotation)
 
 
 def _terms(

@@ -1,17 +1,20 @@
-"""Which faint causes: singles and pairs about the followed ring, and those led to its phase."""
+"""Which causes are told by the ring: singles and pairs about it, and those led to its phase."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from analysis.engine.faint import FAINT, FORMS, Faint
+from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
+from analysis.engine.faint import FORMS, Faint, faint
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.refine import Fitted, Refiner
-from analysis.engine.ring_fit import Followed, follow_ring, residuals, seen
+from analysis.engine.ring_fit import FAINT, LOST, Followed, Samples, follow_ring
 from analysis.engine.screen import Scored, Screen, grouped, groups
+from analysis.engine.sensitivity import Progress
+from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate, Prediction, System
+from analysis.engine.system import Array, Candidate, System
 
 SINGLES, PARENTS, PAIRS = 8, 3, 6
 """So many hypotheses are kept, and so many looked beside."""
@@ -19,6 +22,13 @@ SINGLES, PARENTS, PAIRS = 8, 3, 6
 RESTARTS = 3
 """Nothing is led to the phase once more from where so many hypotheses have come: one may have found
 a way that nothing missed."""
+
+MORE, ASKS = 3, 4.0
+"""Beside the best that was led to the phase, so many are tried with one cause more, where the ring
+promises this rise of the score."""
+
+DOUBT = 2.0
+"""Standard deviations by which the misfit of all samples may hide an error of form."""
 
 
 def faint_search(
@@ -43,12 +53,12 @@ def faint_search(
     chosen = {name: one for name, one in candidates.items() if not one.fixed}
     screen = Screen(found.problem, chosen, found.terms)
     null = screen.null()
-    singles = _best(screen, chosen, null)
+    singles = _best(screen, chosen, null.hypothesis)
     pairs: dict[tuple[str, ...], Scored] = {}
     for parent in singles[:PARENTS]:
         if parent.log_score < null.log_score:
             break
-        for one in _best(_beside(found, parent, chosen), chosen, parent):
+        for one in _best(_beside(found, parent, chosen), chosen, parent.hypothesis):
             known = pairs.get(one.hypothesis.names)
             if known is None or one.log_score > known.log_score:
                 pairs[one.hypothesis.names] = one
@@ -65,59 +75,149 @@ def faint_search(
     return singles, sorted(fitted, key=lambda one: -one.log_score)
 
 
-def followed_each(
-    found: Faint, refiner: Refiner, hypotheses: Sequence[Fitted]
+def followed_search(
+    refiner: Refiner,
+    hypotheses: Sequence[Fitted],
+    nothing: Followed,
+    most_causes: int,
+    progress: Progress | None = None,
 ) -> list[Fitted] | None:
-    """Hypotheses led to the ring's phase, each for itself; None where none comes to the noise.
+    """Hypotheses led to the ring's phase, each for itself, and with one cause more where it asks.
 
     Parameters
     ----------
-    found
-        The same with nothing on.
     refiner
         Made the hypotheses.
     hypotheses
         Those to try, the null not among them.
+    nothing
+        How far parameters alone lead.
+    most_causes
+        Of a hypothesis.
+    progress
+        Told of it.
 
     Returns
     -------
     list of Fitted or None
-        Their scores are those of all samples, the best first.
+        Their scores are those of all samples, the best first; None where none comes to the noise.
     """
     system = refiner.system
-    mask = [seen(bundle, everything=True) for bundle in system.bundles]
+    samples = Samples(system, everything=True)
+    count = len(samples.shares)
+    led: list[Followed] = []
 
-    def residual(prediction: Prediction) -> Array:
-        return residuals(system.bundles, prediction, mask)
+    def lead(nuisance: Array, state: State) -> None:
+        found = follow_ring(system, nuisance, state, everything=True)
+        if found.share < 1.0:
+            sharper = sharpened(state, lambda there: -samples.misfit(found.nuisance, there))
+            if sharper is not state:
+                found = follow_ring(system, found.nuisance, sharper, everything=True)
+        led.append(found)
+        if progress is not None:
+            progress(len(led), max(len(hypotheses), len(led)))
 
-    fitted: list[Fitted] = []
-    misfits: list[float] = []
-    least = np.inf
-    led = [
-        follow_ring(system, one.point.nuisance, one.state, everything=True) for one in hypotheses
-    ]
-    nothing = [found.followed, *(follow_ring(system, _parameters_of(system, one), everything=True,
-                                             near=True) for one in led[:RESTARTS])]  # fmt: skip
-    for one in (*led, *nothing):
-        (left,) = system.simulate([one.point], residual)
-        least = min(least, float(np.mean(left**2)))
-        state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
-        fitted.append(refiner.at(state, refiner.directions_of(one.nuisance)))
-        misfits.append(float(left @ left + one.nuisance @ one.nuisance))
-    if least > FAINT:
+    for one in hypotheses:
+        lead(one.point.nuisance, one.state)
+    for _ in range(most_causes - 1):
+        best = min(led, key=_farthest, default=nothing)
+        if best.left > LOST or len(_names(best)) >= most_causes:
+            break
+        tried = {_names(one) for one in led}
+        found = faint(system, best, _others(refiner, best))
+        for scored in _more(found, refiner)[:MORE]:
+            if scored.hypothesis.names not in tried:
+                lead(_nuisance(found, scored), State.of(scored, refiner.candidates))
+        if min(led, key=_farthest, default=nothing) is best:
+            break
+    nulls = [nothing]
+    if nothing.misfit < LOST * count:
+        for way in sorted(led, key=_farthest)[:RESTARTS]:
+            start = _parameters_of(system, way)
+            nulls.append(follow_ring(system, start, everything=True, near=True))
+    if min(one.misfit for one in (*led, *nulls)) > FAINT * count:
         return None
-    names = fitted[int(np.argmin(misfits))].hypothesis.names
-    form = max((refiner.candidates[name].form_share for name in names), default=0.0)
-    # What the best explains it explains but for its error of form, and so does every other.
-    least_nothing = min(misfits[len(led) :])
-    noise = 1.0 + form**2 * (least_nothing - min(misfits)) / FORMS
-    scored = [
-        replace(one, log_score=one.hypothesis.log_prior(refiner.candidates) - 0.5 * misfit / noise)
-        for one, misfit in zip(fitted, misfits, strict=True)
+    return _weighed(refiner, led, min(nulls, key=_cost), count)
+
+
+def ring_promises(found: Faint, refiner: Refiner) -> list[Fitted]:
+    """Single causes that would explain what is left where the ring cannot be followed further."""
+    return [_fitted(found, refiner, one) for one in _more(found, refiner)]
+
+
+def _weighed(
+    refiner: Refiner, led: Sequence[Followed], nothing: Followed, count: int
+) -> list[Fitted]:
+    """Hypotheses with the evidence of all samples, the best first.
+
+    What the best explains it explains but for its error of form, and so does every other: how
+    large that is, is not known, but no larger than what the best leaves may hide.
+    """
+    best = min(led, key=_cost, default=nothing)
+    form = max((refiner.candidates[one].form_share for one in _names(best)), default=0.0)
+    explained = _cost(nothing) - min(_cost(best), _cost(nothing))
+    hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
+    fitted = []
+    for one in (*led, nothing):
+        state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
+        logs = []
+        for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
+            noise = 1.0 + min((size * form) ** 2 * explained, hidden) / FORMS
+            unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (_cost(best) - count) / noise
+            logs.append(np.log(weight) - unlikely - 0.5 * (_cost(one) - _cost(best)) / noise)
+        score = float(np.logaddexp.reduce(logs)) + state.hypothesis.log_prior(refiner.candidates)
+        there = refiner.at(state, refiner.directions_of(one.nuisance))
+        fitted.append(replace(there, log_score=score, point=one.point))
+    return sorted(fitted, key=lambda one: -one.log_score)
+
+
+def _cost(led: Followed) -> float:
+    """Squared misfit of all samples and of the parameters to their prior."""
+    return led.misfit + float(led.nuisance @ led.nuisance)
+
+
+def _farthest(led: Followed) -> tuple[float, float]:
+    """Least for what was followed farthest, and there is closest."""
+    return -led.share, _cost(led) if led.share == 1.0 else led.left
+
+
+def _names(led: Followed) -> tuple[str, ...]:
+    return () if led.state is None else led.state.hypothesis.names
+
+
+def _others(refiner: Refiner, led: Followed) -> list[Candidate]:
+    """What may be there beside what is on: no second law of one thing."""
+    on = [refiner.candidates[name] for name in _names(led)]
+    families = {one.family for one in on} - {""}
+    return [
+        one
+        for one in refiner.candidates.values()
+        if not one.fixed and one not in on and one.family not in families
     ]
-    ordered = sorted(scored, key=lambda one: -one.log_score)
-    nulls = [one for one in ordered if not one.hypothesis.parts]
-    return [one for one in ordered if one not in nulls[1:]]
+
+
+def _more(found: Faint, refiner: Refiner) -> list[Scored]:
+    """One cause more than is on, where the ring promises something, the best first."""
+    chosen = {one.name: one for one in _others(refiner, found.followed)}
+    state = found.followed.state
+    on = Hypothesis() if state is None else state.hypothesis
+    screen = Screen(
+        found.problem,
+        refiner.candidates,
+        found.terms,
+        on=on,
+        done={name: np.zeros(len(found.problem.residual)) for name in on.names},
+        own=found.own,
+        state=state,
+    )
+    least = screen.null().log_score + ASKS
+    return [one for one in _best(screen, chosen, on) if one.log_score > least]
+
+
+def _nuisance(found: Faint, scored: Scored) -> Array:
+    """Where the nuisances would be, in sigmas."""
+    moved = found.rotation @ (scored.weighed.nuisance - found.problem.at)
+    return np.asarray(found.followed.nuisance + moved)
 
 
 def _parameters_of(system: System, led: Followed) -> Array:
@@ -130,12 +230,12 @@ def _parameters_of(system: System, led: Followed) -> Array:
     return nuisance
 
 
-def _best(screen: Screen, candidates: Mapping[str, Candidate], parent: Scored) -> list[Scored]:
-    families = {candidates[name].family for name in parent.hypothesis.names} - {""}
+def _best(screen: Screen, candidates: Mapping[str, Candidate], parent: Hypothesis) -> list[Scored]:
+    families = {candidates[name].family for name in parent.names if name in candidates} - {""}
     scored = [
         screen.best_of(name)
         for name, one in candidates.items()
-        if name not in parent.hypothesis.parts and one.family not in families
+        if name not in parent.parts and one.family not in families
     ]
     return sorted((one for one in scored if one is not None), key=lambda one: -one.log_score)
 
@@ -164,7 +264,6 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
 
 def _fitted(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
     """The hypothesis as others are, with the score that the ring gives it."""
-    moved = found.rotation @ (scored.weighed.nuisance - found.problem.at)
-    nuisance = refiner.directions_of(found.followed.nuisance + moved)
-    fitted = refiner.at(State.of(scored, refiner.candidates), nuisance)
-    return replace(fitted, log_score=scored.log_score)
+    nuisance, state = _nuisance(found, scored), State.of(scored, refiner.candidates)
+    fitted = refiner.at(state, refiner.directions_of(nuisance))
+    return replace(fitted, log_score=scored.log_score, point=Followed(nuisance, state).point)

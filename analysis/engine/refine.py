@@ -12,6 +12,7 @@ from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import nuisance_columns, simulate_features
+from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
 from analysis.engine.system import Array, Point, System
 
@@ -132,12 +133,12 @@ class Refiner:
         rounds
             Of simulating and solving, at most.
         at_least
-            A hypothesis that is still this far behind after two rounds is left where it is.
+            A hypothesis that after a step does not promise to come so far is left where it is.
         """
         nuisance = np.clip(start.weighed.nuisance, -FAR_SIGMAS, FAR_SIGMAS)
-        return self._improve(
-            State.of(start, self.candidates), nuisance, self._problem.used, rounds, at_least
-        )
+        state, used = State.of(start, self.candidates), self._problem.used
+        state = sharpened(state, lambda there: self._score_at(there, nuisance))
+        return self._improve(state, nuisance, used, rounds, at_least)
 
     def fit_from(self, starts: Sequence[Scored], most: int) -> Fitted:
         """The best fit of one set of candidates from several starts, the best of which are tried.
@@ -233,18 +234,15 @@ class Refiner:
         rounds = ROUNDS_ANEW if self.anew else rounds
         shortest = SHORTEST_ANEW if self.anew else SHORTEST
         for turn in range(rounds - 1):
-            if turn >= 1 and best.log_score < at_least and not self.anew:
+            # A start is where screening thought it best, to first order: one step it gets.
+            if turn and best.log_score + 0.5 * best.weighed.gain < at_least and not self.anew:
                 break
             there = state.moved(best.weighed.estimate, share)
             nuisance_there = nuisance + share * (best.weighed.nuisance - nuisance)
-            tried = self._at(there, nuisance_there, used)
-            # At one variance: the evidence itself would favour whatever claims to do less.
-            rise = (
-                tried.log_score - best.log_score
-                if self.anew
-                else 0.5 * (_misfit_by(best, best) - _misfit_by(tried, best))
-            )
-            if rise > 0.0 and np.isfinite(tried.log_score):
+            rise, tried = self._rise(best, there, nuisance_there)
+            if rise > 0.0:
+                if tried is None:
+                    tried = self._at(there, nuisance_there, used)
                 best, state, nuisance, share = tried, there, nuisance_there, 1.0
                 if rise < SETTLED:
                     break
@@ -253,6 +251,31 @@ class Refiner:
                 if share < 1.01 * SHORTER**shortest:
                     break
         return best
+
+    def _score_at(self, state: State, nuisance: Array) -> float:
+        """How well a simulation fits as it stands, parameters free within their priors."""
+        point = state.point(self._rotation @ nuisance)
+        (features,) = simulate_features(self.system, self.lens, [point])
+        if not np.isfinite(features).all():
+            return -np.inf
+        problem = replace(self._problem, residual=self.data - features, at=nuisance)
+        return -_misfit_by(problem, state, problem.base)
+
+    def _rise(self, best: Fitted, state: State, nuisance: Array) -> tuple[float, Fitted | None]:
+        """By how much a step raises the score, and the hypothesis there where that was needed."""
+        if self.anew:
+            tried = self._at(state, nuisance, best.problem.used)
+            return tried.log_score - best.log_score, tried
+        # At one variance: the evidence itself would favour whatever claims to do less. And without
+        # what everything does there, which many a step is too bad to be worth.
+        point = state.point(self._rotation @ nuisance)
+        (features,) = simulate_features(self.system, self.lens, [point])
+        if not np.isfinite(features).all():
+            return -np.inf, None
+        problem = replace(best.problem, residual=self.data - features, at=nuisance)
+        variance = best.weighed.variance
+        before = _misfit_by(best.problem, best.state, variance)
+        return 0.5 * (before - _misfit_by(problem, state, variance)), None
 
     def _at(self, state: State, nuisance: Array, used: NDArray[np.bool_]) -> Fitted:
         """Simulate there, with a difference for every free number."""
@@ -335,7 +358,7 @@ def _misfit(fitted: Fitted, variance: Array, used: NDArray[np.bool_]) -> float:
     return float((residual**2 / variance[used]).sum() + at @ at)
 
 
-def _misfit_by(fitted: Fitted, by: Fitted) -> float:
-    """Squared misfit of a fit by the variance of another, parameters free within their priors."""
-    shapes, _ = fitted.state.shape_rows()
-    return Frame(fitted.problem, by.weighed.variance).chi2 + float(shapes @ shapes)
+def _misfit_by(problem: Problem, state: State, variance: Array) -> float:
+    """Squared misfit by a given variance, parameters free within their priors."""
+    shapes, _ = state.shape_rows()
+    return Frame(problem, variance).chi2 + float(shapes @ shapes)

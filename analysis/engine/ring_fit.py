@@ -1,12 +1,13 @@
 """The ring itself: parameters moved until a simulation rings in the recording's own phase.
 
 Naming what is strong leaves rings out, for their phase is lost where parameters are a little off.
-Where what is left is small, parameters can be led to the phase: over a short stretch first, in
-which none is far off, and then over longer ones.
+Over a short stretch none is far off: parameters are led to the phase there first, and then over
+longer stretches, as far as it can be followed. Where it cannot be followed further tells as much.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +16,32 @@ from analysis.engine.sensitivity import BATCH
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Prediction, System
 
-WINDOWS = (0.15, 0.25, 0.4, 0.6, 0.8, 1.0, 1.0)
+WINDOWS = (0.08, 0.1, 0.12, 0.15, 0.2, 0.27, 0.36, 0.48, 0.64, 0.8, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
 
-WINDOWS_OF_MANY = (0.4, 1.0, 1.0)
-"""The same for several recordings, which know the parameters better."""
+STEPS = 5
+"""So many steps are taken in each window, at most."""
+
+STRETCHES = 100
+"""How closely it is told up to where a ring could be followed."""
 
 THERE = 1.02
 """A squared misfit of a sample below this, on average, needs no further step."""
+
+WORTH_A_STEP = 2.0
+"""Nor one that promises less than this of the squared misfit."""
 
 STEP = 0.02
 """Of the difference that tells what a parameter does, in sigmas: longer ones turn the phase."""
 
 SHORTER, SHORTEST = 0.4, 3
 """A step that went too far is taken again, this much of it, and so often."""
+
+STRAIGHT = 0.3
+"""Where a simulation misses what was foretold by less than this share, differences still hold."""
+
+FAINT = 1.5
+"""A ring is followed as far as no more than this is left of the squared misfit of a sample."""
 
 LOST = 30.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
@@ -49,10 +62,19 @@ class Followed:
         In sigmas, shape (p,).
     state
         The free numbers of what is on; None: nothing is.
+    share
+        Of the time: the shortest over which more than `FAINT` is left, or 1.
+    left
+        Squared misfit of a sample over that time, on average.
+    misfit
+        Squared misfit of all samples.
     """
 
     nuisance: Array
     state: State | None
+    share: float = 1.0
+    left: float = np.inf
+    misfit: float = np.inf
 
     @property
     def point(self) -> Point:
@@ -60,6 +82,13 @@ class Followed:
         if self.state is None:
             return Point(self.nuisance, ring="as_is")
         return replace(self.state.point(self.nuisance), ring="as_is")
+
+    @property
+    def numbers(self) -> Array:
+        """Nuisances and the free numbers of the state, shape (numbers,)."""
+        if self.state is None:
+            return self.nuisance
+        return np.concatenate([self.nuisance, self.state.values[list(self.state.free)]])
 
     def moved(self, change: Array, share: float) -> "Followed":
         """A share of a step further."""
@@ -84,6 +113,57 @@ class Followed:
         return points, np.array(steps)
 
 
+class Samples:
+    """The samples by which a ring is followed.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    held
+        A recording that is kept back, but for its rest.
+    everything
+        Use what is kept back, too; what is sealed never is.
+    share
+        Those up to this share of the time.
+    """
+
+    def __init__(
+        self, system: System, *, held: str = "", everything: bool = False, share: float = 1.0
+    ) -> None:
+        self.system = system
+        self._mask = [
+            seen(one, held=held, everything=everything, share=share) for one in system.bundles
+        ]
+
+    def residuals(self, points: Sequence[Point]) -> list[Array]:
+        """Of each point, in units of noise, shape (n,)."""
+        found: list[Array] = []
+        for first in range(0, len(points), BATCH):
+            found += self.system.simulate(points[first : first + BATCH], self._residual)
+        return found
+
+    def misfit(self, nuisance: Array, state: State) -> float:
+        """Squared misfit of all samples at a state, ring and all."""
+        (found,) = self.residuals([Followed(nuisance, state).point])
+        return float(found @ found)
+
+    def _residual(self, prediction: Prediction) -> Array:
+        return residuals(self.system.bundles, prediction, self._mask)
+
+    @cached_property
+    def shares(self) -> Array:
+        """When each is, as a share of its recording's time, shape (n,)."""
+        bundles = self.system.bundles
+        parts = []
+        for bundle, chosen in zip(bundles, self._mask, strict=True):
+            count = int(chosen.sum())
+            block = _block(bundle)
+            ends = np.arange(1, count // block + 1) * block / max(count, 1)
+            parts.append(np.repeat(ends, len(bundle.names)))
+        return np.concatenate(parts)
+
+
 def follow_ring(
     system: System,
     nuisance: Array,
@@ -101,53 +181,82 @@ def follow_ring(
         What is simulated.
     nuisance, state
         From where.
-    held
-        A recording that is kept back, but for its rest.
-    everything
-        Use what is kept back, too; what is sealed never is.
+    held, everything
+        See `Samples`.
     near
         The phase is near enough for the whole of the time at once.
     """
-    best = Followed(nuisance, state)
-    many = len({bundle.record for bundle in system.bundles}) > 1
-    windows = WINDOWS_OF_MANY if many else WINDOWS
-    for share in windows[-2:] if near else windows:
-        mask = [seen(one, share=share, held=held, everything=everything) for one in system.bundles]
-        moved = _step(system, best, mask)
-        if moved is None and share == 1.0:
+    samples = Samples(system, held=held, everything=everything)
+    way = _Way(samples, Followed(nuisance, state))
+    for share in WINDOWS[-1:] if near else WINDOWS:
+        for _ in range(STEPS):
+            if not way.step(share):
+                break
+        if way.left(share) > FAINT:
             break
-        best = moved or best
-    return best
+    lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
+    left, share = next((one for one in lefts if one[0] > FAINT), lefts[-1])
+    return replace(way.at, share=float(share), left=left, misfit=float(way.here @ way.here))
 
 
-def _step(system: System, start: Followed, mask: Mask) -> Followed | None:
-    """One Gauss-Newton step over the samples of a mask; None where it leads nowhere."""
+class _Way:
+    """Where one is, and what every free number does about there."""
 
-    def residual(prediction: Prediction) -> Array:
-        return residuals(system.bundles, prediction, mask)
+    def __init__(self, samples: Samples, start: Followed) -> None:
+        self._samples = samples
+        self.at = start
+        (self.here,) = samples.residuals([start.point])
+        self._columns: Array | None = None
 
-    at = start.nuisance
-    (here,) = system.simulate([start.point], residual)
-    if not THERE * len(here) < float(here @ here) < LOST * len(here):
-        return None
-    points, steps = start.neighbours()
-    rows: list[Array] = []
-    for first in range(0, len(points), BATCH):
-        rows += system.simulate(points[first : first + BATCH], residual)
-    columns = (here[None, :] - np.stack(rows)) / steps[:, None]
-    prior = np.concatenate([np.ones(len(at)), np.zeros(len(steps) - len(at))])
-    matrix = columns @ columns.T + np.diag(prior + 1e-9)
-    right = columns @ here
-    right[: len(at)] -= at
-    target = np.linalg.solve(matrix, right)
-    share, before = 1.0, float(here @ here + at @ at)
-    for _ in range(SHORTEST):
-        there = start.moved(target, share)
-        (left,) = system.simulate([there.point], residual)
-        if float(left @ left + there.nuisance @ there.nuisance) < before:
-            return there
-        share *= SHORTER
-    return None
+    def left(self, share: float) -> float:
+        """Squared misfit of a sample up to a share of the time, on average."""
+        inside = self._samples.shares <= share
+        return float(np.mean(self.here[inside] ** 2)) if inside.any() else 0.0
+
+    def step(self, share: float) -> bool:
+        """One Gauss-Newton step over the samples up to a share of the time, if there is one."""
+        inside = self._samples.shares <= share
+        here = self.here[inside]
+        if not len(here):
+            return False
+        if not THERE * len(here) < float(here @ here) < LOST * len(here):
+            return False
+        fresh = self._columns is None
+        if self._columns is None:
+            points, steps = self.at.neighbours()
+            rows = np.stack(self._samples.residuals(points))
+            self._columns = (self.here - rows) / steps[:, None]
+        if self._step(inside):
+            return True
+        if fresh:
+            return False
+        self._columns = None
+        return self.step(share)
+
+    def _step(self, inside: NDArray[np.bool_]) -> bool:
+        assert self._columns is not None
+        at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
+        prior = np.concatenate([np.ones(len(at)), np.zeros(len(columns) - len(at))])
+        matrix = columns @ columns.T + np.diag(prior + 1e-9)
+        right = columns @ here
+        right[: len(at)] -= at
+        target: Array = np.asarray(np.linalg.solve(matrix, right), dtype=float)
+        if float(right @ target) < WORTH_A_STEP:
+            return False
+        share, before = 1.0, float(here @ here + at @ at)
+        for _ in range(SHORTEST):
+            there = self.at.moved(target, share)
+            (found,) = self._samples.residuals([there.point])
+            left = found[inside]
+            if float(left @ left + there.nuisance @ there.nuisance) < before:
+                foretold = here - (there.numbers - self.at.numbers) @ columns
+                bent = float(np.sum((left - foretold) ** 2))
+                if bent > STRAIGHT**2 * float(np.sum((left - here) ** 2)):
+                    self._columns = None
+                self.at, self.here = there, found
+                return True
+            share *= SHORTER
+        return False
 
 
 def seen(
@@ -190,9 +299,14 @@ def residuals(bundles: Sequence[Bundle], prediction: Prediction, mask: Mask) -> 
     for bundle, seen, chosen in zip(bundles, prediction, mask, strict=True):
         whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
         rest = (bundle.value[chosen] - seen[chosen]) @ whiten.T
-        length_s = bundle.t_s[-1] - bundle.t_s[0]
-        block = max(int(len(bundle.t_s) / (FASTEST_HZ * length_s)), 1)
+        block = _block(bundle)
         whole = len(rest) // block * block
         rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
         parts.append(rest.reshape(-1))
     return np.concatenate(parts)
+
+
+def _block(bundle: Bundle) -> int:
+    """How many samples are averaged."""
+    length_s = bundle.t_s[-1] - bundle.t_s[0]
+    return max(int(len(bundle.t_s) / (FASTEST_HZ * length_s)), 1)

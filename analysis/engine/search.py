@@ -4,11 +4,14 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+import numpy as np
+
 from analysis.engine.calibrate import Calibrated, calibrate
-from analysis.engine.faint import FAINT, faint
-from analysis.engine.faint_search import faint_search, followed_each
+from analysis.engine.faint import faint
+from analysis.engine.faint_search import faint_search, followed_search, ring_promises
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Fitted, Refiner
+from analysis.engine.ring_fit import FAINT, LOST, Followed, follow_ring
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.system import Array, Candidate, System
@@ -34,14 +37,20 @@ WIDENED = 3
 """So many of the best are fitted once more with every place free."""
 
 HOPELESS = 60.0
-"""A hypothesis that stays this far behind is not fitted to the end."""
+"""A hypothesis that promises to stay this far behind is not fitted to the end."""
+
+HOPELESS_MORE = 20.0
+"""Nor one of more causes that promises to stay this far behind those of fewer."""
 
 ASKS = 4.0
 """One candidate more is looked for where screening promises this rise of the score."""
 
-FOLLOWED, MOST_FOLLOWED = 3, 1
-"""Of what the ring promises, and of what is likely without it, so many are led to its phase, where
-there are no more recordings than this: with more it takes minutes, and they tell by themselves."""
+FOLLOWED = 3
+"""Of what the ring promises, and of what is likely without it, so many are led to its phase."""
+
+PROMISING = 3.0
+"""What is led to the ring's phase leaves, without the ring, no more than this of the squared misfit
+of a feature."""
 
 PARENTS = 3
 """Hypotheses from which one more is looked for."""
@@ -81,6 +90,13 @@ class Search:
     fitted: tuple[Fitted, ...]
     refiner: Refiner
     faint: bool = False
+
+
+class Promised(NamedTuple):
+    """What screening promises of a hypothesis, and which candidate it has more than its parent."""
+
+    added: str
+    scored: Scored
 
 
 class Look(NamedTuple):
@@ -139,19 +155,22 @@ def search(
         if tell is not None:
             tell("following the ring", done, total)
 
-    about = faint(system, calibrated, following)
-    ringing: list[Fitted] = []
-    if about is not None:
-        screened, fitted = faint_search(about, refiner, candidates)
-        ringing = [one for one in fitted if one.hypothesis.parts][:FOLLOWED]
-    if about is not None and about.left < FAINT:
-        return Search(
-            system, lens, data, calibrated, terms, tuple(screened), null, tuple(fitted), refiner,
-            faint=True,
-        )  # fmt: skip
-    singles = finder.screen(null)
+    nothing = _nothing(system, calibrated)
+    promises: list[Fitted] = []
+    if nothing is not None and nothing.left < LOST:
+        chosen = [one for one in system.candidates if not one.fixed]
+        about = faint(system, nothing, chosen, following)
+        if nothing.left < FAINT:
+            screened, faintly = faint_search(about, refiner, candidates)
+            return Search(
+                system, lens, data, calibrated, terms, tuple(screened), null, tuple(faintly),
+                refiner, faint=True,
+            )  # fmt: skip
+        promises = ring_promises(about, refiner)[:FOLLOWED]
+    promised = finder.screen(null)
+    singles = [one for _, one in promised]
     finder.keep(null)
-    finder.fit_best(singles, SINGLES, "fitting single causes")
+    finder.fit_best(promised, SINGLES, "fitting single causes", HOPELESS)
     if not anew:
         finder.widen(null, WIDENED)
     for size in range(1, most_causes):
@@ -161,27 +180,30 @@ def search(
         parents = [one for one in parents if one.log_score > best - WORTH or size == 1 or anew]
         if not parents:
             break
-        found: list[Scored] = []
+        found: list[Promised] = []
         for parent in parents:
-            promised = finder.screen(parent)
-            found += [one for one in promised if one.log_score > parent.log_score + ASKS or anew]
+            least = -np.inf if anew else parent.log_score + ASKS
+            found += [one for one in finder.screen(parent) if one.scored.log_score > least]
         if not found:
             break
-        finder.fit_best(found, most, stage)
+        finder.fit_best(found, most, stage, HOPELESS_MORE)
         if finder.ranked()[0].hypothesis.parts.keys() == parents[0].hypothesis.parts.keys():
             break
     ranked = finder.ranked()
-    if about is not None and len({one.record for one in system.bundles}) <= MOST_FOLLOWED:
-        likely = [one for one in ranked if one.hypothesis.parts][:FOLLOWED]
-        kin = {candidates[n].family for one in (*ringing, *likely) for n in one.hypothesis.names}
+    likely = [one for one in ranked if one.hypothesis.parts][:FOLLOWED]
+    if rings(system) and (nothing is not None or _near(ranked[0])):
+        kin = {candidates[n].family for one in (*promises, *likely) for n in one.hypothesis.names}
         related = [
             one
             for one in ranked
             if len(one.hypothesis.parts) == 1
             and candidates[one.hypothesis.names[0]].family in kin - {""}
         ]
-        tried = {one.hypothesis.names: one for one in (*ringing, *related, *likely)}
-        rung = followed_each(about, refiner, list(tried.values()))
+        tried: dict[tuple[str, ...], Fitted] = {}
+        for one in (*likely, *related, *promises):
+            tried.setdefault(one.hypothesis.names, one)
+        nothing = nothing or follow_ring(system, calibrated.at, everything=True)
+        rung = followed_search(refiner, list(tried.values()), nothing, most_causes, following)
         if rung is not None:
             return Search(
                 system, lens, data, calibrated, terms, tuple(singles), null, tuple(rung), refiner,
@@ -190,6 +212,27 @@ def search(
     return Search(
         system, lens, data, calibrated, terms, tuple(singles), null, tuple(ranked), refiner
     )
+
+
+def rings(system: System) -> bool:
+    """Whether the system has tones of its own."""
+    return any(bundle.tones_hz for bundle in system.bundles)
+
+
+def _nothing(system: System, calibrated: Calibrated) -> Followed | None:
+    """How far parameters alone lead to the ring's phase; None where they do not fit without it."""
+    problem = calibrated.problem
+    misfit = float(np.mean((problem.residual**2 / problem.base)[problem.used]))
+    if misfit > PROMISING or not rings(system):
+        return None
+    return follow_ring(system, calibrated.at, everything=True)
+
+
+def _near(fitted: Fitted) -> bool:
+    """Whether a hypothesis fits without the ring, so that it may be led to it."""
+    problem = fitted.problem
+    left = problem.residual - problem.nuisance @ (fitted.weighed.nuisance - problem.at)
+    return float(np.mean((left**2 / fitted.weighed.variance)[problem.used])) < PROMISING
 
 
 class _Finder:
@@ -226,7 +269,7 @@ class _Finder:
             state=parent.state,
         )
 
-    def screen(self, parent: Fitted) -> list[Scored]:
+    def screen(self, parent: Fitted) -> list[Promised]:
         """One candidate more than a fitted hypothesis has, to first order; the best first."""
         screen = self._screen(parent)
         found = []
@@ -234,11 +277,11 @@ class _Finder:
             if name not in parent.hypothesis.parts and not self._doubled(parent, name):
                 best = screen.best_of(name)
                 if best is not None:
-                    found.append(best)
+                    found.append(Promised(name, best))
             if self._tell is not None:
                 beside = " and ".join(parent.hypothesis.names) or "nothing"
                 self._tell(f"screening beside {beside}", i + 1, len(self._candidates))
-        return sorted(found, key=lambda one: -one.log_score)
+        return sorted(found, key=lambda one: -one.scored.log_score)
 
     def _terms_beside(self, parent: Fitted) -> Columns:
         if not self._refiner.anew or not parent.hypothesis.parts:
@@ -294,26 +337,25 @@ class _Finder:
             self._candidates[one].family == family for one in parent.hypothesis.parts
         )
 
-    def _kin(self, scored: Scored) -> set[str]:
-        """Families of its candidates."""
-        names = scored.hypothesis.names
-        return {self._candidates[name].family for name in names} - {""}
-
-    def fit_best(self, screened: Iterable[Scored], most: int, stage: str) -> None:
+    def fit_best(
+        self, promised: Iterable[Promised], most: int, stage: str, hopeless: float
+    ) -> None:
         """Fit the best in earnest, each set of candidates once for each choice of terms."""
-        ordered = sorted(screened, key=lambda one: -one.log_score)
+        ordered = sorted(promised, key=lambda one: -one.scored.log_score)
         chosen: list[Scored] = []
         sets: set[tuple[str, ...]] = set()
+        families: set[str] = set()
         anew = self._refiner.anew
         most = MORE_ANEW * most if anew else most
-        for one in ordered:
-            far = one.log_score < ordered[0].log_score - _reach(one) and len(chosen) >= 3
+        for added, one in ordered:
+            far = one.log_score < ordered[0].scored.log_score - _reach(one) and len(chosen) >= 3
             if one.hypothesis.names in sets:
                 continue
             # Laws of one thing are all fitted, or none: to first order they are hard to rank.
-            kin = self._kin(one) & {family for done in chosen for family in self._kin(done)}
-            if not kin and ((far and not anew) or len(chosen) >= most):
+            family = self._candidates[added].family
+            if family not in families and ((far and not anew) or len(chosen) >= most):
                 continue
+            families |= {family} - {""}
             sets.add(one.hypothesis.names)
             chosen.append(one)
         for i, one in enumerate(chosen):
@@ -322,7 +364,7 @@ class _Finder:
                 if anew:
                     self.keep(self._refiner.fit_from(self._starts(one), STARTS))
                 else:
-                    self.keep(self._refiner.fit(one, at_least=best - HOPELESS))
+                    self.keep(self._refiner.fit(one, at_least=best - hopeless))
             if self._tell is not None:
                 self._tell(stage, i + 1, len(chosen))
 

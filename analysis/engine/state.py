@@ -116,6 +116,12 @@ class State:
                 parts[number.candidate] = replace(part, shapes=shapes)
         return replace(self, hypothesis=Hypothesis(parts), values=values)
 
+    def shaped(self, name: str, shape: str, value: float) -> "State":
+        """With a shape that is only tried at another value."""
+        part = self.hypothesis.parts[name]
+        changed = replace(part, shapes={**part.shapes, shape: value})
+        return replace(self, hypothesis=self.hypothesis.plus(name, changed))
+
     def smaller(self, share: float) -> "State":
         """With its magnitudes this much of themselves."""
         values = self.values.copy()

@@ -155,7 +155,9 @@ class Shape:
     logarithmic
         Whether equal ratios count alike (else equal differences).
     whole
-        Only whole numbers: never fitted, only tried.
+        Never fitted, only tried: at the values of the grid and,
+    finest
+        about the best of them, at ever closer ones down to this distance. 0: no closer.
     """
 
     name: str
@@ -166,6 +168,7 @@ class Shape:
     grid: tuple[float, ...] = ()
     logarithmic: bool = True
     whole: bool = False
+    finest: float = 0.0
 
 
 @dataclass(frozen=True)
