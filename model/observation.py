@@ -13,6 +13,9 @@ from model.simulation import Simulation
 Array = NDArray[np.float64]
 Look = Callable[[Array], Array]
 
+LEAST_ROWS = 2
+"""Fewer rows have nothing between them."""
+
 
 @dataclass(frozen=True)
 class Observation:
@@ -81,7 +84,7 @@ def observe(
 def _camera(simulation: Simulation) -> Look:
     """The pose at any time, by cubics through the rows with their rates; at a row, the row."""
     time_s, pose, rate = simulation.t_s, simulation.pose, simulation.pose_rate
-    if len(time_s) < 2:
+    if len(time_s) < LEAST_ROWS:
         return lambda stamp_s: np.repeat(pose[:1], len(stamp_s), axis=0)
 
     def look(stamp_s: Array) -> Array:
@@ -99,7 +102,25 @@ def _camera(simulation: Simulation) -> Look:
 
 
 def _read(time_s: Array, tension: Array, read_s: Array) -> Array:
-    """Straight lines between rows: tensions may jump, and a spline would ring."""
+    """Cubics through the four rows about each time; before and after the rows, their ends.
+
+    A straight line misses the crest of a tone of 27 Hz by 1.5 % at 500 rows a second, which is seen
+    in a recording. Tensions may jump: four rows, unlike a spline, let no jump ring on.
+    """
     at_s = np.broadcast_to(read_s[:, None] if read_s.ndim == 1 else read_s, (len(read_s), 8))
-    columns = [np.interp(at_s[:, i], time_s, tension[:, i]) for i in range(tension.shape[1])]
-    return np.stack(columns, axis=-1)
+    if len(time_s) < LEAST_ROWS:
+        return np.repeat(tension[:1], len(at_s), axis=0)
+    at_s = np.clip(at_s, time_s[0], time_s[-1])
+    row = np.clip(np.searchsorted(time_s, at_s, side="right") - 1, 0, len(time_s) - 2)
+    part = (at_s - time_s[row]) / (time_s[row + 1] - time_s[row])
+    # At the ends a row is continued in a straight line.
+    first, last = 2.0 * tension[:1] - tension[1:2], 2.0 * tension[-1:] - tension[-2:-1]
+    padded = np.vstack([first, tension, last])
+    cable = np.arange(tension.shape[1])
+    before, one, other, after = (padded[row + k, cable] for k in range(4))
+    seen = one + 0.5 * part * (
+        other - before
+        + part * (2.0 * before - 5.0 * one + 4.0 * other - after
+                  + part * (3.0 * (one - other) + after - before))
+    )  # fmt: skip
+    return np.where(part == 1.0, other, seen)

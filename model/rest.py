@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from model.compiled import compiled
 from model.kernel import Extras
-from model.kinematics import rotation, trigonometry
+from model.kinematics import cross, rotation, trigonometry
 from model.machine import Machine
 
 Array = NDArray[np.float64]
@@ -52,8 +52,7 @@ def rest_pose(machine: Machine, extras: Extras | None, wrench: Array, states: in
     for _ in range(MOST_ROUNDS):
         shown[:, :6] = pose + np.vstack([np.zeros(6), STEP * np.eye(6)])
         observe(shown, no_drive, plant, extras, cables)
-        left = np.array([_pull(machine, *one) for one in zip(shown[:, :6], cables[3], strict=True)])
-        left += wrench
+        left = _pull(machine, shown[:, :6], cables[3]) + wrench
         left[:, 2] -= machine.mass * machine.gravity
         move = -np.linalg.solve(((left[1:] - left[0]) / STEP).T, left[0])
         pose = pose + move
@@ -74,13 +73,10 @@ def tones_hz(machine: Machine) -> Array:
     machine
         The plant.
     """
-
-    def net(pose: Array) -> Array:
-        stretched = _lengths(machine, pose) - machine.rest_length
-        return _pull(machine, pose, machine.pretension + machine.stiffness * stretched)
-
-    sides = [net(STEP * row) - net(-STEP * row) for row in np.eye(6)]
-    stiffness = -np.array(sides).T / (2.0 * STEP)
+    poses = STEP * np.vstack([np.eye(6), -np.eye(6)])
+    stretched = _lines(machine, poses)[2] - machine.rest_length
+    pull = _pull(machine, poses, machine.pretension + machine.stiffness * stretched)
+    stiffness = -(pull[:6] - pull[6:]).T / (2.0 * STEP)
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = machine.mass * np.eye(3)
     inertia[3:, 3:] = machine.inertia
@@ -88,24 +84,18 @@ def tones_hz(machine: Machine) -> Array:
     return np.asarray(np.sort(np.sqrt(np.maximum(squares, 0.0))) / (2.0 * np.pi))
 
 
-def _arms(machine: Machine, pose: Array) -> Array:
-    """r_i in O-XYZ, shape (8, 3)."""
-    return np.asarray(machine.anchor @ _rotation(pose[3:]).T)
+def _lines(machine: Machine, poses: Array) -> tuple[Array, Array, Array]:
+    """r_i and the lines to the pulleys in O-XYZ, shape (n, 8, 3), and their lengths, (n, 8)."""
+    turns = np.array([rotation(trigonometry(tuple(angles))) for angles in poses[:, 3:].tolist()])
+    arms = machine.anchor @ turns.transpose(0, 2, 1)
+    along = machine.base - poses[:, None, :3] - arms
+    return arms, along, np.sqrt((along**2).sum(axis=-1))
 
 
-def _rotation(angles: Array) -> Array:
-    """R = Rz(psi) Ry(theta) Rx(phi), shape (3, 3)."""
-    return np.array(rotation(trigonometry((float(angles[0]), float(angles[1]), float(angles[2])))))
-
-
-def _lengths(machine: Machine, pose: Array) -> Array:
-    along = machine.base - pose[:3] - _arms(machine, pose)
-    return np.asarray(np.linalg.norm(along, axis=1))
-
-
-def _pull(machine: Machine, pose: Array, tension: Array) -> Array:
-    """Force and moment of the cables on the platform, shape (6,)."""
-    arm = _arms(machine, pose)
-    along = machine.base - pose[:3] - arm
-    force = tension[:, None] * along / np.linalg.norm(along, axis=1, keepdims=True)
-    return np.concatenate([force.sum(axis=0), np.cross(arm, force).sum(axis=0)])
+def _pull(machine: Machine, poses: Array, tension: Array) -> Array:
+    """Force and moment of the cables on the platform, of tensions (n, 8), shape (n, 6)."""
+    arms, along, lengths = _lines(machine, poses)
+    force = (tension / lengths)[..., None] * along
+    x, y, z = np.moveaxis(arms, -1, 0)
+    moment = np.stack(cross((x, y, z), tuple(np.moveaxis(force, -1, 0))), axis=-1)
+    return np.hstack([force.sum(axis=1), moment.sum(axis=1)])

@@ -282,9 +282,9 @@ class DriveKey:
         return isinstance(other, DriveKey) and self._value == other._value
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=16)
 def _cached_table(key: DriveKey) -> Array:
-    """Four tables, some megabytes: a fit asks thousands of times for one of them."""
+    """Tables of some megabytes: a fit to several runs asks thousands of times for a few of them."""
     nodes = find_method(key.method).nodes
     return drive_table(
         key.machine, key.motion, key.steps.stage_s(nodes), key.steps.middle_s, key.kind

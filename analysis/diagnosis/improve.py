@@ -59,7 +59,7 @@ def physics(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, dict[st
     assert diagnosis.judgement is not None
     found: dict[str, dict[str, Any]] = {}
     for cause in diagnosis.judgement.causes:
-        setting = Setting(cause.values, cause.shapes)
+        setting = Setting(cause.own, cause.shapes)
         for record in range(len(machine.recordings)):
             own = library_values(cause.name, setting, machine.peaks_n, record, machine.frame_hz)
             if own is None:

@@ -66,9 +66,12 @@ class Cause:
     rivals
         Others that these data do not tell from it, the likeliest first.
     values, sigmas
-        Term -> magnitude and standard deviation, for the terms that are on.
+        Term -> magnitude and standard deviation, for the terms that are on: the mean over the laws
+        of one family that are in the set, as likely as they are, and what they differ by counts.
+    own
+        Term -> magnitude by its law alone, which goes with
     shapes, shape_sigmas
-        Its other numbers.
+        its other numbers.
     at_limit
         Numbers at the edge of their plausible range: a better fit with an implausible number.
     """
@@ -79,6 +82,7 @@ class Cause:
     rivals: tuple[Rival, ...]
     values: Mapping[str, float]
     sigmas: Mapping[str, float]
+    own: Mapping[str, float]
     shapes: Mapping[str, float]
     shape_sigmas: Mapping[str, float]
     at_limit: tuple[str, ...]
@@ -146,7 +150,9 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
         return Judgement("none", (), null, tuple(float(w) for w in weights))
     causes: tuple[Cause, ...] = ()
     for _ in range(len(chosen.hypothesis.parts)):
-        every = (_cause(name, chosen, fitted, weights) for name in chosen.hypothesis.names)
+        every = (
+            _cause(name, chosen, fitted, weights, candidates) for name in chosen.hypothesis.names
+        )
         causes = tuple(sorted(every, key=lambda one: -one.present))
         kept = {causes[0].name, *(one.name for one in causes[1:] if one.present > SECOND)}
         fewer = [one for one in fitted if set(one.hypothesis.names) == kept]
@@ -196,7 +202,13 @@ def _plausible_score(fitted: Fitted) -> float:
     return fitted.log_score - IMPLAUSIBLE * len(fitted.at_limit)
 
 
-def _cause(name: str, chosen: Fitted, fitted: Sequence[Fitted], weights: Array) -> Cause:
+def _cause(
+    name: str,
+    chosen: Fitted,
+    fitted: Sequence[Fitted],
+    weights: Array,
+    candidates: Mapping[str, Candidate],
+) -> Cause:
     others = set(chosen.hypothesis.names) - {name}
     slot: dict[str, float] = defaultdict(float)
     best: dict[str, Fitted] = {}
@@ -225,17 +237,33 @@ def _cause(name: str, chosen: Fitted, fitted: Sequence[Fitted], weights: Array) 
         covered += slot[key] / whole
     source = chosen if head == name else best[head]
     part = source.hypothesis.parts[head]
+    family = candidates[head].family
+    laws = [Rival(head, slot[head] / everything, source)]
+    laws += [one for one in rivals if family and candidates[one.name].family == family]
+    means = {term: _mean(term, laws) for term in part.terms}
     return Cause(
         name=head,
         probability=slot[head] / everything,
         present=whole / everything,
         rivals=tuple(rivals),
-        values={term: source.values[head, term] for term in part.terms},
-        sigmas={term: source.sigmas.get((head, term), 0.0) for term in part.terms},
+        values={term: value for term, (value, _) in means.items()},
+        sigmas={term: sigma for term, (_, sigma) in means.items()},
+        own={term: source.values[head, term] for term in part.terms},
         shapes=dict(part.shapes),
         shape_sigmas={k[1]: v for k, v in source.shape_sigmas.items() if k[0] == head},
         at_limit=tuple(what for who, what in source.at_limit if who == head),
     )
+
+
+def _mean(term: str, laws: Sequence[Rival]) -> tuple[float, float]:
+    """Mean and standard deviation of a magnitude over laws that have it."""
+    have = [one for one in laws if (one.name, term) in one.fitted.values]
+    weight = np.array([one.probability for one in have])
+    weight = weight / weight.sum()
+    value = np.array([one.fitted.values[one.name, term] for one in have])
+    sigma = np.array([one.fitted.sigmas.get((one.name, term), 0.0) for one in have])
+    mean = float(weight @ value)
+    return mean, float(np.sqrt(weight @ (sigma**2 + (value - mean) ** 2)))
 
 
 def _verdict(causes: Sequence[Cause], candidates: Mapping[str, Candidate]) -> str:

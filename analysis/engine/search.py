@@ -48,6 +48,9 @@ ASKS = 4.0
 FOLLOWED = 3
 """Of what the ring promises, and of what is likely without it, so many are led to its phase."""
 
+UNLIKELY = 6.0
+"""What is this far behind nothing, without the ring, is not likely."""
+
 PROMISING = 3.0
 """What is led to the ring's phase leaves, without the ring, no more than this of the squared misfit
 of a feature."""
@@ -190,7 +193,8 @@ def search(
         if finder.ranked()[0].hypothesis.parts.keys() == parents[0].hypothesis.parts.keys():
             break
     ranked = finder.ranked()
-    likely = [one for one in ranked if one.hypothesis.parts][:FOLLOWED]
+    least = null.log_score - UNLIKELY
+    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
     if rings(system) and (nothing is not None or _near(ranked[0])):
         kin = {candidates[n].family for one in (*promises, *likely) for n in one.hypothesis.names}
         related = [

@@ -63,7 +63,7 @@ def _ambiguous(
 ) -> Diagnosis:
     first, second = fitted
     rival = Other(NAMES[1], 0.45, second)
-    cause = Cause(NAMES[0], 0.55, 1.0, (rival,), {}, {}, {}, {}, ())
+    cause = Cause(NAMES[0], 0.55, 1.0, (rival,), {}, {}, {}, {}, {}, ())
     judgement = Judgement("ambiguous", (cause,), first, (0.55, 0.45, 0.0))
     searched = Search(machine, lens, data, calibrated, {}, (), null, (first, second, null), refiner)
     return Diagnosis(machine, calibrated, (), searched, judgement, None, None)
