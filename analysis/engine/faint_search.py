@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
 from analysis.engine.faint import FORMS, Faint, faint
-from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Fitted, Refiner
 from analysis.engine.ring_fit import FAINT, LOST, Followed, Samples, follow_ring
 from analysis.engine.screen import Scored, Screen, grouped, groups
@@ -26,6 +26,9 @@ a way that nothing missed."""
 MORE, ASKS = 3, 4.0
 """Beside the best that was led to the phase, so many are tried with one cause more, where the ring
 promises this rise of the score."""
+
+NEARLY = 0.9
+"""All places alike are followed where they promise this share of what the best places do."""
 
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
@@ -108,11 +111,12 @@ def followed_search(
     led: list[Followed] = []
 
     def lead(nuisance: Array, state: State) -> None:
-        found = follow_ring(system, nuisance, state, everything=True)
+        ahead = min(led, key=_farthest).costs if led else ()
+        found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
             sharper = sharpened(state, lambda there: -samples.misfit(found.nuisance, there))
             if sharper is not state:
-                found = follow_ring(system, found.nuisance, sharper, everything=True)
+                found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
         led.append(found)
         if progress is not None:
             progress(len(led), max(len(hypotheses), len(led)))
@@ -210,8 +214,24 @@ def _more(found: Faint, refiner: Refiner) -> list[Scored]:
         own=found.own,
         state=state,
     )
-    least = screen.null().log_score + ASKS
-    return [one for one in _best(screen, chosen, on) if one.log_score > least]
+    nothing = screen.null().log_score
+    best = [one for one in _best(screen, chosen, on) if one.log_score > nothing + ASKS]
+    return [_simpler(screen, one, nothing) for one in best]
+
+
+def _simpler(screen: Screen, scored: Scored, nothing: float) -> Scored:
+    """The same in all places alike, where that promises nearly as much.
+
+    Over a short stretch, and to first order, which places are on is no more than a guess.
+    """
+    (name,) = set(scored.hypothesis.names) - set(screen.on.names)
+    candidate = screen.candidates[name]
+    every = tuple(one.name for one in candidate.terms)
+    if not candidate.shareable or len(every) < 2 or candidate.together:
+        return scored
+    part = Part(every, True, scored.hypothesis.parts[name].shapes)
+    alike = screen.with_part(name, part)
+    return alike if alike.log_score - nothing > NEARLY * (scored.log_score - nothing) else scored
 
 
 def _nuisance(found: Faint, scored: Scored) -> Array:

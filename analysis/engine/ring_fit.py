@@ -37,14 +37,14 @@ STEP = 0.02
 SHORTER, SHORTEST = 0.4, 3
 """A step that went too far is taken again, this much of it, and so often."""
 
-STRAIGHT = 0.3
-"""Where a simulation misses what was foretold by less than this share, differences still hold."""
-
 FAINT = 1.5
 """A ring is followed as far as no more than this is left of the squared misfit of a sample."""
 
 LOST = 30.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
+
+BEHIND = 600.0
+"""What stays this far behind another, in squared misfit, is not followed further."""
 
 FASTEST_HZ = 80.0
 """Faster samples are averaged in blocks down to about this."""
@@ -68,6 +68,8 @@ class Followed:
         Squared misfit of a sample over that time, on average.
     misfit
         Squared misfit of all samples.
+    costs
+        Squared misfit at the end of each window, with that of the parameters to their prior.
     """
 
     nuisance: Array
@@ -75,6 +77,7 @@ class Followed:
     share: float = 1.0
     left: float = np.inf
     misfit: float = np.inf
+    costs: tuple[float, ...] = ()
 
     @property
     def point(self) -> Point:
@@ -172,6 +175,7 @@ def follow_ring(
     held: str = "",
     everything: bool = False,
     near: bool = False,
+    ahead: Sequence[float] = (),
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -185,18 +189,24 @@ def follow_ring(
         See `Samples`.
     near
         The phase is near enough for the whole of the time at once.
+    ahead
+        Costs of another hypothesis, window by window.
     """
     samples = Samples(system, held=held, everything=everything)
     way = _Way(samples, Followed(nuisance, state))
+    costs: list[float] = []
     for share in WINDOWS[-1:] if near else WINDOWS:
         for _ in range(STEPS):
             if not way.step(share):
                 break
-        if way.left(share) > FAINT:
+        costs.append(way.cost(share))
+        behind = len(ahead) >= len(costs) and costs[-1] > ahead[len(costs) - 1] + BEHIND
+        if way.left(share) > FAINT or behind:
             break
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
     left, share = next((one for one in lefts if one[0] > FAINT), lefts[-1])
-    return replace(way.at, share=float(share), left=left, misfit=float(way.here @ way.here))
+    misfit = float(way.here @ way.here)
+    return replace(way.at, share=float(share), left=left, misfit=misfit, costs=tuple(costs))
 
 
 class _Way:
@@ -207,11 +217,17 @@ class _Way:
         self.at = start
         (self.here,) = samples.residuals([start.point])
         self._columns: Array | None = None
+        self._steps = np.zeros(0)
 
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
         inside = self._samples.shares <= share
         return float(np.mean(self.here[inside] ** 2)) if inside.any() else 0.0
+
+    def cost(self, share: float) -> float:
+        """Squared misfit up to a share of the time, and of the parameters to their prior."""
+        inside = self.here[self._samples.shares <= share]
+        return float(inside @ inside + self.at.nuisance @ self.at.nuisance)
 
     def step(self, share: float) -> bool:
         """One Gauss-Newton step over the samples up to a share of the time, if there is one."""
@@ -223,9 +239,9 @@ class _Way:
             return False
         fresh = self._columns is None
         if self._columns is None:
-            points, steps = self.at.neighbours()
+            points, self._steps = self.at.neighbours()
             rows = np.stack(self._samples.residuals(points))
-            self._columns = (self.here - rows) / steps[:, None]
+            self._columns = (self.here - rows) / self._steps[:, None]
         if self._step(inside):
             return True
         if fresh:
@@ -249,14 +265,19 @@ class _Way:
             (found,) = self._samples.residuals([there.point])
             left = found[inside]
             if float(left @ left + there.nuisance @ there.nuisance) < before:
-                foretold = here - (there.numbers - self.at.numbers) @ columns
-                bent = float(np.sum((left - foretold) ** 2))
-                if bent > STRAIGHT**2 * float(np.sum((left - here) ** 2)):
-                    self._columns = None
-                self.at, self.here = there, found
+                self._learn(there, found)
                 return True
             share *= SHORTER
         return False
+
+    def _learn(self, there: Followed, found: Array) -> None:
+        """Go there, and let what was found correct the differences (Broyden 1965)."""
+        assert self._columns is not None
+        moved = there.numbers - self.at.numbers
+        missed = self.here - found - moved @ self._columns
+        scaled = moved / self._steps
+        self._columns += np.outer(scaled / self._steps, missed) / float(scaled @ scaled)
+        self.at, self.here = there, found
 
 
 def seen(

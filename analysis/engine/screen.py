@@ -120,8 +120,12 @@ class Screen:
 
     def with_terms(self, name: str, terms: tuple[str, ...]) -> Scored:
         """One more candidate with given terms, each its own value, at its first variant."""
-        part = Part(terms, False, self.candidates[name].variants()[0])
-        return self._score(self.on.plus(name, part), {name: 0}, (name,))
+        return self.with_part(name, Part(terms, False, self.candidates[name].variants()[0]))
+
+    def with_part(self, name: str, part: Part) -> Scored:
+        """One more candidate with given terms and shapes."""
+        variant = list(self.candidates[name].variants()).index(dict(part.shapes))
+        return self._score(self.on.plus(name, part), {name: variant}, (name,))
 
     def _choices(
         self, candidate: Candidate, columns: Array
