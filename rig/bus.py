@@ -5,12 +5,13 @@ from cdpr8.rigfile.schema import Rig
 from rig.amplifier import message
 from rig.amplifier.dialogue import Dialogue, NoAnswerError
 from rig.amplifier.frame import BadFrameError
-from rig.amplifier.node import NodeClient, Settings
+from rig.amplifier.node import NodeClient, Settings, State
 from rig.amplifier.probe import probe_format
 from rig.amplifier.profile import Identity, profile_of
 from rig.amplifier.scaling import Scaling
 from rig.assignment import amplifiers
-from rig.station import Station, Value, check_identity
+from rig.roll_call import call_the_roll
+from rig.station import Station, Value
 from rig.transport import LineLostError, Received, Transport
 
 STOP_WAIT_S = 0.1
@@ -82,15 +83,15 @@ class Bus:
             An amplifier is missing, another than the rig file's, or refuses a setting.
         """
         self.stop()
-        identities = self._identify_all()
-        settings = {}
+        identities = call_the_roll(self._dialogue, self._rig)
+        states = {}
         for cable, amplifier in self._amplifiers.items():
             node = NodeClient(self._dialogue, amplifier.address)
             node.identify()
-            settings[cable] = node.configure(self._settings)
+            states[cable] = node.configure(self._settings)
         self._dialogue.tell(ALL_MEASURE)
         stations = tuple(
-            self._station(cable, identities[cable], settings[cable]) for cable in self._amplifiers
+            self._station(cable, identities[cable], states[cable]) for cable in self._amplifiers
         )
         self._dialogue.unused()  # of the setting up, not of the run
         return stations
@@ -154,7 +155,7 @@ class Bus:
             )
             if Identity.parse(answer) != station.identity:
                 return False
-            if node.configure(self._settings) != station.settings:
+            if node.configure(self._settings) != station.state:
                 return False
             self._dialogue.tell(b"MSV?0;")
             self._take(station)
@@ -188,7 +189,7 @@ class Bus:
             node = NodeClient(self._dialogue, station.address)
             try:
                 same = node.identify(tries=1) == station.identity
-                if same and node.configure(self._settings) == station.settings:
+                if same and node.configure(self._settings) == station.state:
                     found.append(station)
             except LineLostError:
                 raise
@@ -268,30 +269,7 @@ class Bus:
         held_up_s = max(0.0, took_s - least_s)
         return received_s - held_up_s + min(held_up_s, JITTER_S) / 2.0, held_up_s
 
-    def _identify_all(self) -> dict[int, Identity]:
-        found: dict[int, Identity] = {}
-        silent = []
-        garbled: dict[int, bytes] = {}
-        for cable, amplifier in self._amplifiers.items():
-            try:
-                identity = NodeClient(self._dialogue, amplifier.address).identify()
-            except NoAnswerError as fault:
-                if fault.came:
-                    garbled[cable] = fault.came
-                    continue
-                silent.append(cable)
-                if len(silent) > 2 and not found:
-                    break
-                continue
-            check_identity(self._rig, cable, amplifier, identity, self.transport.name)
-            found[cable] = identity
-        if garbled:
-            raise self._garbled(garbled, silent)
-        if silent:
-            raise self._silent(silent, found)
-        return found
-
-    def _station(self, cable: int, identity: Identity, settings: dict[str, str]) -> Station:
+    def _station(self, cable: int, identity: Identity, state: State) -> Station:
         amplifier = self._amplifiers[cable]
         profile = profile_of(identity)
         format_ = probe_format(
@@ -302,41 +280,8 @@ class Bus:
             address=amplifier.address,
             identity=identity,
             profile=profile,
-            settings=settings,
+            state=state,
             format=format_,
             scaling=Scaling.of(amplifier, format_, self._zeros.get(cable, 0.0)),
             period_s=profile.period_s(self._settings.icr),
-        )
-
-    def _garbled(self, came: dict[int, bytes], silent: list[int]) -> DeviceError:
-        cable = min(came)
-        what = f"cable {cable}: amplifier {self._amplifiers[cable].address:02d} answers garbled"
-        if len(came) > 1:
-            what += f", and {len(came) - 1} more do"
-        if silent:
-            addresses = (f"{self._amplifiers[each].address:02d}" for each in silent)
-            what += f", and nobody has address {', '.join(addresses)}"
-        return DeviceError(
-            f"{what} ({came[cable][:16]!r})",
-            allowed="one amplifier at each address",
-            where=self.transport.name,
-            remedy="two may share the address: `rig set-address` gives one of them another by its "
-            "serial number; else check wiring, baud and parity",
-        )
-
-    def _silent(self, cables: list[int], found: dict[int, Identity]) -> DeviceError:
-        where = self.transport.name
-        if not found:
-            return DeviceError(
-                f"no amplifier answers at {self.transport.line}",
-                where=where,
-                remedy="check power and wiring, and baud and parity under [bus] in the rig file",
-            )
-        missing = ", ".join(
-            f"cable {cable} (address {self._amplifiers[cable].address:02d})" for cable in cables
-        )
-        return DeviceError(
-            f"{len(cables)} of {len(self._amplifiers)} amplifiers do not answer: {missing}",
-            where=where,
-            remedy="check their power, wiring and addresses; `rig scan` lists who answers",
         )

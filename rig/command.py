@@ -168,6 +168,7 @@ def record_command(
             taps=taps,
             beside_rig=files_beside(rig_text, rig_path.parent),
             command_log=log,
+            warn=lambda words: note(f"warning: {words}"),
         )
     if as_json:
         say_json(summary(recording))
@@ -208,6 +209,7 @@ def scan_command(
                     "cable": cables.get(node.address),
                     "identity": node.identity.text if node.identity else None,
                     "settings": node.settings,
+                    "own_scaling": node.own_scaling or None,
                     "signal_mv_per_v": node.signal_mv_per_v,
                     "trouble": node.trouble or None,
                 }
@@ -216,7 +218,16 @@ def scan_command(
         )
     elif found:
         table = Table(title=f"{len(found)} amplifiers on {opened.transport.name}")
-        for heading in ("address", "cable", "type", "serial", "mV/V", *SHOWN, "trouble"):
+        for heading in (
+            "address",
+            "cable",
+            "type",
+            "serial",
+            "mV/V",
+            *SHOWN,
+            "own scaling",
+            "trouble",
+        ):
             table.add_column(heading)
         for node in found:
             who = node.identity
@@ -227,6 +238,7 @@ def scan_command(
                 who.serial_number if who else "?",
                 "" if node.signal_mv_per_v is None else f"{node.signal_mv_per_v:+.4f}",
                 *(node.settings.get(name, "") for name in SHOWN),
+                node.own_scaling,
                 node.trouble,
             )
         say_table(table)

@@ -27,6 +27,7 @@ from rig.reserve import Reserve
 from rig.schedule import run_by_time, run_in_threads
 from rig.scribe import DirectScribe, Scribe, ThreadedScribe
 from rig.start_record import start_record
+from rig.station import concerns
 from rig.stop import StopRequest
 from rig.streaming import StreamingStream, StreamPort, open_ports
 from rig.streaming.port import close_ports
@@ -87,6 +88,7 @@ def record(
     taps: Taps | None = None,
     beside_rig: Mapping[str, bytes] | None = None,
     command_log: CommandLog | None = None,
+    warn: Callable[[str], None] | None = None,
 ) -> Recording:
     """Record one run.
 
@@ -126,6 +128,8 @@ def record(
         Files that the rig file names, for the run folder: `cdpr8.rigfile.files_beside`.
     command_log
         The winch controller's log, opened; closed at the end. Needs a real clock.
+    warn
+        Told what a user must know before the run, though it goes on.
 
     Returns
     -------
@@ -152,6 +156,9 @@ def record(
         session = _Session(machine, rig, clock, stop, excitation, alarm, zero_values(zeros))
         session.taps, session.command_log = taps, command_log
         check_zeros(zeros, {each.cable: each.identity.serial_number for each in session.stations})
+        if warn is not None:
+            for words in concerns(session.stations):
+                warn(words)
         machine.ready()
         if stop.requested:
             raise KeyboardInterrupt  # nothing has been recorded

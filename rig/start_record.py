@@ -73,7 +73,8 @@ def _node(station: Station, zeros: Zeros | None) -> Node:
             "cable": station.cable,
             "address": station.address,
             "identity": station.identity.text,
-            "settings": station.settings,
+            "settings": station.state.settings,
+            "found": station.state.found,
             "profile": station.profile.name,
             "value_bytes": station.format.length,
             "zero_mv_per_v": station.scaling.zero_mv_per_v,
@@ -90,7 +91,7 @@ def _filter_delay_s(station: Station) -> float:
     First-order behaviour is a fair model of the filter (protocol note, section 8). Stored, and
     applied where the run is read: the times in tension.csv are those of the bus.
     """
-    cut_off_hz = station.profile.cut_offs_hz[int(station.settings["ASF"])]
+    cut_off_hz = station.profile.cut_offs_hz[int(station.state.settings["ASF"])]
     filter_s = 0.0 if cut_off_hz is None else 1.0 / (2.0 * math.pi * cut_off_hz)
     return filter_s + (station.period_s - station.profile.period_s(0)) / 2.0
 

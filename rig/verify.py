@@ -10,6 +10,7 @@ import numpy as np
 
 from cdpr8 import CABLES
 from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+from rig.station import by_cables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,6 +54,7 @@ def verify(run: Run) -> list[Finding]:
         *_ending(run),
         *_cables(run),
         *_skew(run),
+        *_amplifiers(run),
         *_losses(run),
         *_overloads(run),
         *_frames(run),
@@ -112,6 +114,16 @@ def _skew(run: Run) -> Iterator[Finding]:
         spread = max(spread, float(np.median(nearest)))
     words = f"values of one sweep lie up to {1e3 * spread:.2f} ms apart; each has its own time"
     yield Finding(Verdict.OK, "skew", words)
+
+
+def _amplifiers(run: Run) -> Iterator[Finding]:
+    """What they do to their digits themselves, as they answered before the run."""
+    asked = [node for node in run.start.nodes if node.found]
+    if not asked:
+        return
+    told = by_cables((node.cable, node.settings, node.found) for node in asked)
+    words = "; ".join(told) or "digits at the factory's curve, no tare in them"
+    yield Finding(Verdict.WARN if told else Verdict.OK, "amplifiers", words)
 
 
 def _losses(run: Run) -> Iterator[Finding]:

@@ -21,7 +21,16 @@ class Node(Record):
     cable: int = Field(ge=1, le=8)
     address: int
     identity: str = Field(description="the answer to IDN?")
-    settings: dict[str, str] = Field(description="command -> answer, read back")
+    settings: dict[str, str] = Field(
+        description="command -> answer: written and read back, and the amplifier's own curve (LDW, "
+        "LWT), linearisation (LIC), zero at power-on (ZSE) and trigger (TRC); ? where it has none"
+    )
+    found: dict[str, str] = Field(
+        default_factory=dict,
+        description="command -> answer before anything was written: scaling (NOV), net or gross "
+        "(TAS), zero tracking (ZTR), tare (TAV, never changed), calibration weight (CWT), steps "
+        "(RSN)",
+    )
     zero_mv_per_v: float = Field(default=0.0, description="host-side zero")
     zero_taken: str = Field(default="never", description="when the zero was taken")
     profile: str | None = Field(default=None, description="the dialect, chosen by the identity")

@@ -5,7 +5,8 @@ from collections import deque
 from collections.abc import Sequence
 
 from rig.simulated.faults import LineFaults
-from rig.simulated.node import Answer, SimulatedNode
+from rig.simulated.memory import Answer
+from rig.simulated.node import SimulatedNode
 from rig.transport import Chunk, LineSettings
 
 _SELECT = re.compile(rb"S(\d\d)$")

@@ -105,7 +105,7 @@ class StreamPort:
         try:
             if node.identify(tries=1) != self.station.identity:
                 return False
-            if node.configure(self._settings) != self.station.settings:
+            if node.configure(self._settings) != self.station.state:
                 return False
         except DeviceError:
             return False
@@ -177,7 +177,7 @@ class StreamPort:
         identity = node.identify()
         check_identity(self._rig, self._cable, self._amplifier, identity, self.transport.name)
         profile = profile_of(identity)
-        settings = node.configure(self._settings)
+        state = node.configure(self._settings)
         period_s = profile.period_s(self._settings.icr)
         format_ = self._probe(period_s)
         return Station(
@@ -185,7 +185,7 @@ class StreamPort:
             address=self._amplifier.address,
             identity=identity,
             profile=profile,
-            settings=settings,
+            state=state,
             format=format_,
             scaling=Scaling.of(self._amplifier, format_, zero_mv_per_v),
             period_s=period_s,
