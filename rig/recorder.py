@@ -1,11 +1,9 @@
 """Recording a run: open the rig, start the bus, write what comes until the end."""
 
-import errno
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 from cdpr8.clock import Clock, RealClock, VirtualClock
 from cdpr8.errors import DataError, DeviceError, ToolkitError, UsageError
@@ -21,6 +19,7 @@ from rig.announcements import AnnouncementStream, announcements
 from rig.bus import Bus
 from rig.command_log import CommandLog
 from rig.command_stream import CommandStream
+from rig.ending import disk_fault, reason, require_empty
 from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
 from rig.reserve import Reserve
@@ -151,7 +150,7 @@ def record(
     try:
         if command_log is not None and isinstance(clock, VirtualClock):
             raise UsageError("a command log comes in real time", remedy="leave --virtual out")
-        _require_empty(folder)
+        require_empty(folder)
         machine = machine or open_machine(rig, excitation, clock, seed=seed)
         session = _Session(machine, rig, clock, stop, excitation, alarm, zero_values(zeros))
         session.taps, session.command_log = taps, command_log
@@ -180,7 +179,7 @@ def record(
         try:
             reserve = Reserve(folder)
         except OSError as error:
-            raise _disk_fault(error, folder) from None
+            raise disk_fault(error, folder) from None
         stop_record, fault = session.run(writer, reserve, now_s + LEAD_S, watch)
         return Recording(folder, start, stop_record, fault, session.commands)
     finally:
@@ -250,7 +249,7 @@ class _Session:
         except DeviceError as error:
             fault = error
         except OSError as error:
-            fault = _disk_fault(error, writer.folder)
+            fault = disk_fault(error, writer.folder)
         ended_s = self._clock.monotonic_s() - origin_s
         anchor = ClockAnchor(t_s=round(ended_s, 6), wall=self._clock.wall())
         reserve.release()
@@ -293,10 +292,10 @@ class _Session:
     ) -> tuple[StopRecord, ToolkitError | None]:
         scribe.close()
         if fault is None and isinstance(scribe.failure, OSError):
-            fault = _disk_fault(scribe.failure, writer.folder)
+            fault = disk_fault(scribe.failure, writer.folder)
         tally = self._tally
         record_ = StopRecord(
-            reason=_reason(self._stop, fault),
+            reason=reason(self._stop, fault),
             t_s=anchor.t_s,
             samples=tally.samples,
             frames=tally.frames,
@@ -306,37 +305,5 @@ class _Session:
         try:
             writer.stop(record_)
         except OSError as error:
-            fault = fault or _disk_fault(error, writer.folder)
+            fault = fault or disk_fault(error, writer.folder)
         return record_, fault
-
-
-def _reason(
-    stop: StopRequest, fault: ToolkitError | None
-) -> Literal["duration", "interrupted", "stopped_at_once", "device", "disk_full"]:
-    if isinstance(fault, DeviceError):
-        return "device"
-    if fault is not None:
-        return "disk_full"
-    if stop.requested:
-        return "stopped_at_once" if stop.at_once else "interrupted"
-    return "duration"
-
-
-def _require_empty(folder: Path) -> None:
-    """Told before any device is opened; `RunWriter` holds to it."""
-    if folder.is_dir() and any(folder.iterdir()):
-        raise DataError(
-            "the run folder is not empty; nothing recorded is ever overwritten",
-            where=str(folder),
-            remedy="choose another name",
-        )
-
-
-def _disk_fault(error: OSError, folder: Path) -> DataError:
-    full = error.errno == errno.ENOSPC
-    return DataError(
-        "the disk is full" if full else f"the run cannot be written: {error.strerror or error}",
-        where=str(folder),
-        remedy="what was written before stays readable; "
-        + ("free some space and record again" if full else "check the disk"),
-    )
