@@ -16,6 +16,7 @@ from cdpr8.runfolder import (
     StopRecord,
 )
 from rig.announcements import AnnouncementStream, announcements
+from rig.broadcast import open_bus
 from rig.bus import Bus
 from rig.command_log import CommandLog
 from rig.command_stream import CommandStream
@@ -216,7 +217,7 @@ class _Session:
             self._ports = open_ports(machine.ports, rig, zeros)
             self.stations = tuple(port.station for port in self._ports)
         else:
-            self._bus = Bus(machine.transport, rig, zeros)
+            self._bus = open_bus(machine.transport, rig, zeros)
             self.stations = self._bus.start()
         if machine.camera is not None:
             import av  # noqa: F401  # now, not between the start record and the first sample

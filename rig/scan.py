@@ -9,7 +9,7 @@ from rig.amplifier.dialogue import Dialogue, NoAnswerError
 from rig.amplifier.node import NodeClient
 from rig.amplifier.profile import Identity
 from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V
-from rig.bus import ALL_STOP, STOP_WAIT_S
+from rig.bus import STOP_WAIT_S
 from rig.transport import Transport
 
 SHOWN = ("BDR", "COF", "ICR", "ASF", "FMD", "TAS", "NOV", "CSM")
@@ -64,7 +64,7 @@ def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator
         Which to ask.
     """
     dialogue = Dialogue(transport)
-    dialogue.tell(ALL_STOP)
+    dialogue.tell(message.ALL_STOP)
     transport.drain(STOP_WAIT_S)
     for address in addresses:
         node = NodeClient(dialogue, address)

@@ -58,7 +58,8 @@ def start_record(
         rig_sha256=hashlib.sha256(rig_text.encode("utf-8")).hexdigest(),
         excitation=excitation,
         motion_start_known=machine.motion_known,
-        nodes=tuple(_node(station, zeros) for station in stations),
+        nodes=tuple(_node(station, zeros, bool(machine.ports)) for station in stations),
+        sweep="streaming" if machine.ports else rig.bus.sweep,
         camera=_camera(machine.camera, rig),
         clock_anchor=anchor,
         command_log=command_log,
@@ -67,7 +68,7 @@ def start_record(
     )
 
 
-def _node(station: Station, zeros: Zeros | None) -> Node:
+def _node(station: Station, zeros: Zeros | None, streaming: bool) -> Node:
     return Node.model_validate(
         {
             "cable": station.cable,
@@ -80,6 +81,8 @@ def _node(station: Station, zeros: Zeros | None) -> Node:
             "zero_mv_per_v": station.scaling.zero_mv_per_v,
             "zero_taken": taken(zeros, station.cable),
             "output_period_s": station.period_s,
+            # On a port of its own a value's time is fitted, and what of it is left is not stated.
+            "sampling_sigma_s": None if streaming else station.period_s / math.sqrt(12.0),
             "filter_delay_s": _filter_delay_s(station),
         }
     )

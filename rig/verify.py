@@ -113,6 +113,9 @@ def _skew(run: Run) -> Iterator[Finding]:
         nearest = np.minimum(np.abs(times[after] - first), np.abs(times[after - 1] - first))
         spread = max(spread, float(np.median(nearest)))
     words = f"values of one sweep lie up to {1e3 * spread:.2f} ms apart; each has its own time"
+    if run.start.sweep == "broadcast":
+        period_s = max((node.output_period_s or 0.0 for node in run.start.nodes), default=0.0)
+        words = f"triggered together: one time a sweep, measured within {1e3 * period_s:.2f} ms"
     yield Finding(Verdict.OK, "skew", words)
 
 

@@ -79,6 +79,11 @@ class Bus(Section):
         default=False,
         description="each amplifier has a serial port of its own and sends its values unasked",
     )
+    sweep: Literal["polled", "broadcast"] = Field(
+        default="polled",
+        description="how a value of each amplifier is taken: asked for one by one, or measured by "
+        "all after one broadcast trigger and then fetched one by one",
+    )
     checksum: bool = Field(
         default=True,
         description="a checksum guards each value, in the place of the amplifier's status byte; "
@@ -87,6 +92,15 @@ class Bus(Section):
     output_format: int = Field(default=24, ge=0, le=255, description="COF of the AED protocol")
     output_rate: int = Field(default=0, ge=0, le=7, description="ICR of the AED protocol")
     filter: int = Field(default=0, ge=0, le=10, description="ASF of the AED protocol")
+
+    @model_validator(mode="after")
+    def _one_kind_of_sweep(self) -> Self:
+        if self.streaming and self.sweep == "broadcast":
+            raise ValueError(
+                'sweep = "polled" with streaming = true: on a port of its own each amplifier sends '
+                "unasked, and no broadcast reaches all of them"
+            )
+        return self
 
 
 class Intrinsics(Section):

@@ -38,6 +38,11 @@ class Node(Record):
     output_period_s: float | None = Field(
         default=None, description="between two values inside the amplifier, nominal"
     )
+    sampling_sigma_s: float | None = Field(
+        default=None,
+        description="standard uncertainty of the instants in tension.csv: on a bus the output "
+        "period over the square root of 12, each amplifier for itself",
+    )
     filter_delay_s: float | None = Field(
         default=None,
         description="of the amplifier's filter and averaging; taken off the times at reading, "
@@ -79,6 +84,11 @@ class StartRecord(Record):
         description="whether the start of the motion was recorded on the tension clock"
     )
     nodes: tuple[Node, ...] = ()
+    sweep: Literal["polled", "broadcast", "streaming"] | None = Field(
+        default=None,
+        description="how values were taken: asked for one by one; measured by all after one "
+        "broadcast trigger, and then fetched; or sent unasked on a port for each amplifier",
+    )
     camera: CameraStart | None = None
     clock_anchor: ClockAnchor
     import_map: str | None = Field(

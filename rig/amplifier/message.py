@@ -19,6 +19,16 @@ BROADCAST = 98
 ADDRESSES = range(32)
 
 
+TRIGGER = b"S98;MSV?;"
+"""Has every node measure its next value and hold it until it is selected (section 9)."""
+
+MEASURE = b"MSV?0;"
+ALL_MEASURE = b";S98;MSV?0;"
+"""Has every node measure all the time."""
+
+ALL_STOP = b";S98;STP;"
+
+
 def command(mnemonic: str, *parameters: int | str) -> bytes:
     """A command: numbers as they are, texts in double quotes (section 2)."""
     spelled = (f'"{item}"' if isinstance(item, str) else str(item) for item in parameters)

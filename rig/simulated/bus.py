@@ -16,6 +16,9 @@ _IGNORED = bytes(range(0x21))
 
 LONGEST_COMMAND = 64
 
+BACKLOG = 2
+"""Values that wait in a node while the line is taken."""
+
 
 class SimulatedBus:
     """The far end of the line: eight nodes, or any number.
@@ -85,7 +88,9 @@ class SimulatedBus:
                 if at_s > until_s:
                     break
                 node.streamed()
-                self._send(frame, at_s)
+                # A node skips values that its line is too slow for (status bit 7, section 5).
+                if self._answer_free_s - at_s <= BACKLOG * len(frame) * self.line.char_s:
+                    self._send(frame, at_s)
         return self._outgoing
 
     def _pass_on(self, text: bytes, selection: re.Match[bytes] | None, now_s: float) -> None:

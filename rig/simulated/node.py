@@ -104,6 +104,8 @@ class SimulatedNode(NodeMemory):
         streams = self.settings["COF"] >= POWER_ON_STREAM
         self._selection = Selection.OTHER if streams else Selection.THIS
         self._last_number = -1
+        # Number and time of a value that a broadcast trigger had it measure, until it is fetched.
+        self._held: tuple[int, float] | None = None
         self._zero = 0
         if self.settings["ZSE"]:
             self._set_zero(ready_s)
@@ -145,6 +147,12 @@ class SimulatedNode(NodeMemory):
             return None
         mine = address == self.settings["ADR"]
         self._selection = Selection.THIS if mine else Selection.OTHER
+        if mine and self._held is not None:
+            number, ready_s = self._held
+            if now_s < ready_s:
+                return None  # asked too early: what real ones do then is not documented
+            self._held = None
+            return Answer(self.frame(number), TURNAROUND_S)
         if mine and self.in_bus_mode and not self.settings["TRC0"]:
             number = self.signal.number_at(now_s + TURNAROUND_S, self.settings["ICR"])
             return Answer(self.frame(number), TURNAROUND_S)
@@ -220,7 +228,11 @@ class SimulatedNode(NodeMemory):
         self._last_number = self.signal.number_at(now_s, icr)
         if count is None and not self.settings["COF"] & BUS_MODE:
             number = self._last_number + 1
-            return Answer(self.frame(number), max(0.0, self.signal.sampled_s(number, icr) - now_s))
+            ready_s = self.signal.sampled_s(number, icr)
+            if self._selection is Selection.ALL:
+                self._held = (number, ready_s)
+                return None
+            return Answer(self.frame(number), max(0.0, ready_s - now_s))
         if count is not None and not count.isdecimal():
             return self._refuse(EXECUTION_ERROR)
         self.remaining = int(count or 0)

@@ -35,7 +35,6 @@ LATE_S = 0.01
 JUST = 0.05
 """Of a period: how much late a value may be and still count as on time."""
 
-START = message.command("MSV?", 0)
 STOP = message.END + message.command("STP")
 
 
@@ -84,7 +83,7 @@ class StreamPort:
         self._number = -1
         self._received = self._last_end = 0
         self.heard_s = self.transport.clock.monotonic_s()
-        self._dialogue.tell(START)
+        self._dialogue.tell(message.MEASURE)
 
     def stop(self) -> None:
         """End the stream and wait for silence."""
@@ -196,7 +195,7 @@ class StreamPort:
         amplifier, clock, line = self._amplifier, self.transport.clock, self.transport.line
         formats = formats_of(self._settings.cof, self._settings.csm, amplifier.address)
         self._check_speed(min(each.length for each in formats), period_s)
-        self._dialogue.tell(START)
+        self._dialogue.tell(message.MEASURE)
         count = PROBED * formats[0].length
         wait_s = count * line.char_s + 2 * PROBED * period_s
         raw = self.transport.read(count, clock.monotonic_s() + wait_s).data
