@@ -1,11 +1,40 @@
-"""How a recording may end, and what keeps it from beginning: reasons and faults in words."""
+"""How a recording may end, and what keeps it from beginning."""
 
 import errno
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from cdpr8.errors import DataError, DeviceError, ToolkitError
+from cdpr8.runfolder import StartRecord, StopRecord
 from rig.stop import StopRequest
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What was recorded.
+
+    Attributes
+    ----------
+    folder
+        The run folder.
+    start, stop
+        Its records.
+    fault
+        What ended it before its time, None where nothing did.
+    commands
+        Rows of the command log, None where none was recorded.
+    """
+
+    folder: Path
+    start: StartRecord
+    stop: StopRecord
+    fault: ToolkitError | None = None
+    commands: int | None = None
+
+    def rate_per_s(self, cable: int) -> float:
+        """Mean rate of a cable's samples."""
+        return self.stop.samples[cable] / self.stop.t_s if self.stop.t_s > 0 else 0.0
 
 
 def reason(

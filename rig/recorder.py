@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from cdpr8.clock import Clock, RealClock, VirtualClock
@@ -12,7 +11,6 @@ from cdpr8.runfolder import (
     ClockAnchor,
     EventKind,
     RunWriter,
-    StartRecord,
     StopRecord,
 )
 from rig.announcements import AnnouncementStream, announcements
@@ -20,7 +18,8 @@ from rig.broadcast import open_bus
 from rig.bus import Bus
 from rig.command_log import CommandLog
 from rig.command_stream import CommandStream
-from rig.ending import disk_fault, reason, require_empty
+from rig.ending import Recording, disk_fault, reason, require_empty
+from rig.filter_delay import doubts
 from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
 from rig.reserve import Reserve
@@ -41,33 +40,6 @@ LEAD_S = 0.25
 
 Watch = Callable[[Tally, float], None]
 """Shown the counts and the run's time, now and then; may stall, may fail."""
-
-
-@dataclass(frozen=True)
-class Recording:
-    """What was recorded.
-
-    Attributes
-    ----------
-    folder
-        The run folder.
-    start, stop
-        Its records.
-    fault
-        What ended it before its time, None where nothing did.
-    commands
-        Rows of the command log, None where none was recorded.
-    """
-
-    folder: Path
-    start: StartRecord
-    stop: StopRecord
-    fault: ToolkitError | None = None
-    commands: int | None = None
-
-    def rate_per_s(self, cable: int) -> float:
-        """Mean rate of a cable's samples."""
-        return self.stop.samples[cable] / self.stop.t_s if self.stop.t_s > 0 else 0.0
 
 
 def record(
@@ -157,7 +129,7 @@ def record(
         session.taps, session.command_log = taps, command_log
         check_zeros(zeros, {each.cable: each.identity.serial_number for each in session.stations})
         if warn is not None:
-            for words in concerns(session.stations):
+            for words in (*concerns(session.stations), *doubts(session.stations, rig)):
                 warn(words)
         machine.ready()
         if stop.requested:

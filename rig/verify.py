@@ -55,6 +55,7 @@ def verify(run: Run) -> list[Finding]:
         *_cables(run),
         *_skew(run),
         *_amplifiers(run),
+        *_filter(run),
         *_losses(run),
         *_overloads(run),
         *_frames(run),
@@ -127,6 +128,23 @@ def _amplifiers(run: Run) -> Iterator[Finding]:
     told = by_cables((node.cable, node.settings, node.found) for node in asked)
     words = "; ".join(told) or "digits at the factory's curve, no tare in them"
     yield Finding(Verdict.WARN if told else Verdict.OK, "amplifiers", words)
+
+
+def _filter(run: Run) -> Iterator[Finding]:
+    """The delay that is taken off where the run is read, and where it comes from."""
+    told: dict[str, list[str]] = {}
+    for node in run.start.nodes:
+        if node.filter_delay_s is not None and node.filter_delay_from is not None:
+            words = f"{1e3 * node.filter_delay_s:.2f}"
+            if node.filter_delay_sigma_s is not None:
+                words += f" ± {1e3 * node.filter_delay_sigma_s:.2f}"
+            told.setdefault(f"{words} ms, {node.filter_delay_from}", []).append(str(node.cable))
+    if told:
+        alike = len(told) == 1
+        words = "; ".join(
+            each if alike else f"cable {', '.join(cables)}: {each}" for each, cables in told.items()
+        )
+        yield Finding(Verdict.OK, "delay", f"{words}; taken off where the run is read")
 
 
 def _losses(run: Run) -> Iterator[Finding]:

@@ -48,6 +48,12 @@ class Node(Record):
         description="of the amplifier's filter and averaging; taken off the times at reading, "
         "never in tension.csv",
     )
+    filter_delay_sigma_s: float | None = Field(default=None, description="its standard uncertainty")
+    filter_delay_from: Literal["measured", "from the cut-off"] | None = Field(
+        default=None,
+        description="where it comes from: filter_delay_s of the rig file, or first order from the "
+        "filter's cut-off, with the mean over an output period",
+    )
 
 
 class ClockAnchor(Record):

@@ -17,8 +17,9 @@ from rig_stand_ins import (
 
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import Run, load_run
+from rig.ending import Recording
 from rig.quarantine import Quarantine
-from rig.recorder import Recording, record
+from rig.recorder import record
 from rig.simulated.node import RESTART_S, SimulatedNode
 from rig.simulated.rig import assemble
 
