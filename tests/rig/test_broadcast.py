@@ -12,6 +12,7 @@ from rig_stand_ins import (
     record_virtually,
     rig_text,
     simulated_line,
+    virtual_clock,
     with_bus,
     without_noise,
 )
@@ -25,8 +26,10 @@ from rig.amplifier import message
 from rig.amplifier.frame import BadFrameError
 from rig.broadcast import BroadcastBus, open_bus
 from rig.intake import Intake
+from rig.sampler import Sampler
 from rig.scan import scan
 from rig.simulated.node import Selection, SimulatedNode
+from rig.simulated.rig import assemble
 from rig.simulated.signal import NodeSignal
 from rig.streams import BusStream, Span
 from rig.tally import Tally
@@ -236,6 +239,17 @@ def test_whether_values_carry_crlf_is_probed(broadcast: Rig, crlf: bool) -> None
         node.frame = lambda number, monkey=monkey: monkey(number)[: 6 if crlf else 4]
     stations = open_bus(transport, broadcast).start()
     assert {station.format.length for station in stations} == {6 if crlf else 4}
+
+
+def test_zeros_and_pretension_are_taken_in_sweeps_too(broadcast: Rig) -> None:
+    machine = assemble(broadcast, WavePlatform(), None, virtual_clock(), seed=1)
+    sampler = Sampler(machine, broadcast, {})
+    tensions_n = sampler.tensions_n(0.5)
+    assert tensions_n == pytest.approx(
+        {cable: 5.0 + 2.0 * cable for cable in range(1, 9)}, abs=0.01
+    )
+    assert len(sampler.signals_mv_per_v(0.5)[8]) > 0.5 * 0.9 * 107
+    sampler.close()
 
 
 def test_a_slow_output_rate_is_no_pause(broadcast: Rig, tmp_path: Path) -> None:
