@@ -64,15 +64,16 @@ class Value:
     reading
         Digits and status.
     request_s
-        Just before it was asked for.
+        Just before it was asked for, or triggered.
     received_s
         When its last byte had come.
     sampled_s
-        Estimated sampling instant: the start of the answer less the mean age of a newest value.
-        Its standard uncertainty is the period over the square root of 12 (section 9).
+        Estimated sampling instant: the start of the answer less the mean age of a newest value, or
+        the end of the trigger and the mean wait for the next one. Its standard uncertainty is the
+        period over the square root of 12 (section 9).
     timed
         Whether it is known: not where the answer was held up by more than that, on the way to the
-        amplifier or on the way back.
+        amplifier or on the way back, nor where the value may be of an earlier trigger.
     """
 
     reading: Reading
