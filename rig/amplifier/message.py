@@ -11,7 +11,7 @@ ACCEPTED = b"0\r\n"
 REFUSED = b"?\r\n"
 LINE_END = b"\r\n"
 
-_NUMBERS = re.compile(rb"[ +-]?\d+(,[ +-]?\d+)*\r\n")
+_NUMBERS = re.compile(rb" *[+-]?\d+(, *[+-]?\d+)*\r\n")
 
 BROADCAST = 98
 """`S98;` addresses every node, and none answers."""

@@ -100,7 +100,7 @@ def remedy(settings: Mapping[str, str], address: int, password: str) -> str:
     after = "".join(dict.fromkeys(JUDGED[each].after for each in wrong))
     curve = {"LDW", "LWT"} & set(wrong)
     return (
-        "write the values down, they are a calibration; then from a serial terminal send "
+        "write the values down first; then from a serial terminal send "
         f'`;S{address:02d};SPW"{password}";{"".join(commands)}TDD1;`'
         + (" (this clears its tare)" if curve else "")
         + f".{after} The toolkit changes none of them; `rig scan` tells of all amplifiers"
