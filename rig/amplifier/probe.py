@@ -50,7 +50,8 @@ def probe_format(
         allowed="values of 2 or 4 bytes, all with CR LF or all without",
         where=dialogue.transport.name,
         remedy="check that [bus] output_format is a code of binary values such as 24, "
-        "and the wiring if values are cut",
+        "and the wiring if values are cut"
+        + ('; or set sweep = "polled": it may obey the trigger otherwise' if wait_s else ""),
     )
 
 

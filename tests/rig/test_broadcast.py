@@ -230,6 +230,20 @@ def test_an_amplifier_that_gives_a_value_twice_is_refused(
     assert 'sweep = "polled"' in fault.value.remedy
 
 
+def test_an_amplifier_that_takes_longer_than_its_period_is_refused(
+    broadcast: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, transport = simulated_line(broadcast)
+    ready = NodeSignal.sampled_s
+    monkeypatch.setattr(
+        NodeSignal, "sampled_s", lambda signal, number, icr: ready(signal, number + 2, icr)
+    )
+    with pytest.raises(DeviceError, match="amplifier 01 gives values that fit 0 formats") as fault:
+        open_bus(transport, broadcast).start()
+    assert "nothing" in fault.value.what
+    assert 'or set sweep = "polled"' in fault.value.remedy
+
+
 @pytest.mark.parametrize("crlf", [True, False])
 def test_whether_values_carry_crlf_is_probed(broadcast: Rig, crlf: bool) -> None:
     line, transport = simulated_line(broadcast)
