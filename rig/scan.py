@@ -12,7 +12,7 @@ from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V
 from rig.bus import STOP_WAIT_S
 from rig.transport import Transport
 
-SHOWN = ("BDR", "COF", "ICR", "ASF", "FMD", "TAS", "NOV", "CSM")
+SHOWN = ("BDR", "COF", "ICR", "ASF", "FMD", "TAS", "TAV", "NOV", "ZSE", "ZTR", "CSM")
 """Settings that are shown, each in a column."""
 
 READ = tuple(dict.fromkeys((*SHOWN, *own_scaling.JUDGED, *own_scaling.AS_FOUND)))
