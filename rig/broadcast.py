@@ -14,7 +14,7 @@ from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Rig
 from rig.amplifier import message
 from rig.amplifier.dialogue import SETTLE_S
-from rig.amplifier.frame import BUS_MODE, WITHOUT_CRLF, BadFrameError, FrameFormat
+from rig.amplifier.frame import BUS_MODE, BadFrameError, FrameFormat
 from rig.amplifier.probe import probe_format
 from rig.answer_times import JITTER_S
 from rig.bus import UNTIMED_S, Bus
@@ -79,7 +79,7 @@ class BroadcastBus(Bus):
         return super().resume(stations)
 
     def _output_format(self, cof: int) -> int:
-        return cof % BUS_MODE + (cof & WITHOUT_CRLF)
+        return cof & ~BUS_MODE
 
     def _measure(self, command: bytes) -> None:
         """Nothing is measured unless it is triggered."""

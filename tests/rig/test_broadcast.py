@@ -64,7 +64,7 @@ def test_nine_tenths_of_the_theoretical_sweep_rate(
     assert 0.9 * expected <= rate <= 1.01 * expected
 
 
-@pytest.mark.parametrize(("cof", "length"), [(24, 6), (8, 6), (40, 4), (2, 4), (34, 2)])
+@pytest.mark.parametrize(("cof", "length"), [(24, 6), (8, 6), (88, 6), (40, 4), (2, 4), (34, 2)])
 def test_the_rate_is_what_the_line_can_carry(broadcast: Rig, cof: int, length: int) -> None:
     line_s = (9 + 8 * (4 + length)) * 11 / 115200
     rate = sweeps(with_bus(broadcast, output_format=cof), 2.0)
