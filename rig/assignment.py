@@ -52,7 +52,17 @@ def _check_format(rig: Rig) -> None:
                 "+ 32 without CR LF; the bus mode's 16 does not matter where streaming = true",
                 remedy="8: 4 bytes with a checksum, CR LF at the end",
             )
-    elif not (cof & BUS_MODE and any(isinstance(each, FrameFormat) for each in found)):
+        return
+    binary = any(isinstance(each, FrameFormat) for each in found)
+    if rig.bus.sweep == "broadcast":
+        if not binary:
+            raise RigFileError(
+                f'[bus] output_format = {cof} gives no binary values, and sweep = "broadcast"',
+                where=rig.name,
+                allowed="0, 2, 4, 6, 8 or 12 (and these + 32); the bus mode's 16 does not matter",
+                remedy="24 or 8: 4 bytes with a checksum or status",
+            )
+    elif not (cof & BUS_MODE and binary):
         raise RigFileError(
             f"[bus] output_format = {cof} gives no binary values in bus mode",
             where=rig.name,

@@ -3,14 +3,16 @@
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Rig
 from rig.amplifier import message
-from rig.amplifier.dialogue import Dialogue, NoAnswerError
-from rig.amplifier.frame import BadFrameError
-from rig.amplifier.node import NodeClient, Settings
+from rig.amplifier.dialogue import Dialogue
+from rig.amplifier.frame import BadFrameError, FrameFormat, Reading
+from rig.amplifier.node import NodeClient, Settings, State
 from rig.amplifier.probe import probe_format
 from rig.amplifier.profile import Identity, profile_of
 from rig.amplifier.scaling import Scaling
+from rig.answer_times import AnswerTimes
 from rig.assignment import amplifiers
-from rig.station import Station, Value, check_identity
+from rig.roll_call import call_the_roll
+from rig.station import Station, Value
 from rig.transport import LineLostError, Received, Transport
 
 STOP_WAIT_S = 0.1
@@ -25,18 +27,12 @@ LATE_S = 0.05
 BAUD_TOLERANCE = 0.05
 """How much faster than its name a line may be; beyond 5 % it would not be understood."""
 
-JITTER_S = 0.0005
-"""How much the way to the node and back may vary, in adapters, without the computer's fault."""
-
 UNTIMED_S = 0.002
 """An answer held up for longer, and for longer than an output period, has no known time."""
 
-ALL_STOP = message.END + message.select(message.BROADCAST) + message.command("STP")
-ALL_MEASURE = message.END + message.select(message.BROADCAST) + b"MSV?0;"
-
 
 class Bus:
-    """Eight amplifiers on one line.
+    """Eight amplifiers on one line, asked in turn for their newest value (bus mode).
 
     Parameters
     ----------
@@ -46,7 +42,17 @@ class Bus:
         The machine: which amplifier is on which cable, and how they are to be set.
     zeros
         Host-side zeros of the cells by cable, in mV/V.
+
+    Attributes
+    ----------
+    asks_again
+        Whether a value that is doubted can be asked for again at once.
+    waits_s
+        How long a value may have to be waited for before it is asked for.
     """
+
+    asks_again = True
+    waits_s = 0.0
 
     def __init__(
         self, transport: Transport, rig: Rig, zeros: dict[int, float] | None = None
@@ -58,14 +64,14 @@ class Bus:
         self._dialogue = Dialogue(transport)
         # Without a parity bit nothing but the checksum would betray a damaged value.
         self._settings = Settings(
-            cof=rig.bus.output_format,
+            cof=self._output_format(rig.bus.output_format),
             icr=rig.bus.output_rate,
             asf=rig.bus.filter,
             csm=1 if rig.bus.checksum or rig.bus.parity == "none" else 0,
         )
         self._asked: Station | None = None
         self._asked_s = 0.0
-        self._least_s: dict[int, float] = {}
+        self._answers = AnswerTimes(transport.line)
         self._late_feared = False
 
     def start(self) -> tuple[Station, ...]:
@@ -82,15 +88,15 @@ class Bus:
             An amplifier is missing, another than the rig file's, or refuses a setting.
         """
         self.stop()
-        identities = self._identify_all()
-        settings = {}
+        identities = call_the_roll(self._dialogue, self._rig)
+        states = {}
         for cable, amplifier in self._amplifiers.items():
             node = NodeClient(self._dialogue, amplifier.address)
             node.identify()
-            settings[cable] = node.configure(self._settings)
-        self._dialogue.tell(ALL_MEASURE)
+            states[cable] = node.configure(self._settings)
+        self._measure(message.ALL_MEASURE)
         stations = tuple(
-            self._station(cable, identities[cable], settings[cable]) for cable in self._amplifiers
+            self._station(cable, identities[cable], states[cable]) for cable in self._amplifiers
         )
         self._dialogue.unused()  # of the setting up, not of the run
         return stations
@@ -126,7 +132,7 @@ class Bus:
         if following is not None:
             # Bytes that came unasked are the next value's trouble, not this one's.
             try:
-                self._ask(following)
+                self._prepare(following)
             except BadFrameError as fault:
                 self._dialogue.keep(fault.raw)
         return value
@@ -144,8 +150,11 @@ class Bus:
             self._take(station)
         except BadFrameError as fault:
             self._dialogue.keep(fault.raw)
+            if fault.raw:
+                self._dialogue.settle()
         else:
-            return True
+            if self._is_proof:
+                return True
         node = NodeClient(self._dialogue, station.address)
         try:
             # Selected it is; a node out of bus mode answers questions.
@@ -154,16 +163,13 @@ class Bus:
             )
             if Identity.parse(answer) != station.identity:
                 return False
-            if node.configure(self._settings) != station.settings:
+            if node.configure(self._settings) != station.state:
                 return False
-            self._dialogue.tell(b"MSV?0;")
+            self._measure(message.MEASURE)
             self._take(station)
-        except (NoAnswerError, BadFrameError):
-            self._dialogue.settle()
-            return False
         except LineLostError:
             raise
-        except DeviceError:
+        except (DeviceError, BadFrameError):
             self._dialogue.settle()
             return False
         return True
@@ -181,28 +187,47 @@ class Bus:
         DeviceError
             The line is gone again.
         """
-        self._asked = None
         self.stop()
         found = []
         for station in stations:
             node = NodeClient(self._dialogue, station.address)
             try:
                 same = node.identify(tries=1) == station.identity
-                if same and node.configure(self._settings) == station.settings:
+                if same and node.configure(self._settings) == station.state:
                     found.append(station)
             except LineLostError:
                 raise
             except DeviceError:
                 self._dialogue.settle()
-        self._dialogue.tell(ALL_MEASURE)
+        self._measure(message.ALL_MEASURE)
         self._dialogue.settle()
         return tuple(found)
 
     def stop(self) -> None:
         """Stop all output and wait for silence."""
         self._asked = None
-        self._dialogue.tell(ALL_STOP)
+        self._dialogue.tell(message.ALL_STOP)
         self._dialogue.hush(STOP_WAIT_S)
+
+    # From here on: what differs where values are triggered (`rig.broadcast`).
+
+    _is_proof = True  # a value proves that its amplifier was not reset: that one would give none
+
+    def _output_format(self, cof: int) -> int:
+        """The COF that is written."""
+        return cof
+
+    def _measure(self, command: bytes) -> None:
+        """Have amplifiers measure all the time."""
+        self._dialogue.tell(command)
+
+    def _probe(self, address: int, _: float) -> FrameFormat:
+        """How a node's values look; it has this output period."""
+        return probe_format(self._dialogue, address, self._settings.cof, self._settings.csm)
+
+    def _prepare(self, station: Station) -> None:
+        """Do what can be done already for a value that will be taken next."""
+        self._ask(station)
 
     def _ask(self, station: Station) -> None:
         if stray := self.transport.discard():
@@ -215,9 +240,21 @@ class Bus:
         if self._asked is not station:
             self._ask(station)
         self._asked = None
-        transport, request_s = self.transport, self._asked_s
-        line, length = transport.line, station.format.length
-        deadline_s = request_s + (len(station.request) + length) * line.char_s + VALUE_MARGIN_S
+        reading, received = self._fetch(station)
+        answer_s, held_up_s = self._answers.began(station, self._asked_s, received)
+        return Value(
+            reading,
+            self._asked_s,
+            received.last_byte_s,
+            answer_s - station.period_s / 2.0,
+            timed=held_up_s <= max(station.period_s, UNTIMED_S),
+        )
+
+    def _fetch(self, station: Station) -> tuple[Reading, Received]:
+        """The answer that is due, where it is one."""
+        transport, length = self.transport, station.format.length
+        chars = len(station.request) + length
+        deadline_s = self._asked_s + chars * transport.line.char_s + VALUE_MARGIN_S
         received = transport.read(length, deadline_s)
         self._late_feared |= len(received.data) < length
         if received.damaged:
@@ -226,14 +263,7 @@ class Bus:
         if received.last_byte_s > deadline_s:
             raise BadFrameError("noticed too late to be timed", received.data)
         self._require_no_other(station, received)
-        answer_s, held_up_s = self._answered(station, received.last_byte_s - length * line.char_s)
-        return Value(
-            reading,
-            request_s,
-            received.last_byte_s,
-            answer_s - station.period_s / 2.0,
-            timed=held_up_s <= max(station.period_s, UNTIMED_S),
-        )
+        return reading, received
 
     def _require_no_other(self, station: Station, received: Received) -> None:
         """Refuse an answer that may be to an earlier request.
@@ -253,90 +283,18 @@ class Bus:
                 raise BadFrameError("another answer came behind it", received.data + behind)
             self._late_feared = False
 
-    def _answered(self, station: Station, received_s: float) -> tuple[float, float]:
-        """When an answer began, and how long it was held up.
-
-        A node takes about the same time to answer always, and the line never less than the request
-        needs: the least time that a node has taken is that of the line and of this program. What
-        an answer takes beyond it was held up on the way there or on the way back, and nobody can
-        tell which: in adapters, up to `JITTER_S`, both alike; in a computer that was busy, most
-        likely on the way back (docs/decisions/0008).
-        """
-        took_s = received_s - self._asked_s - len(station.request) * self.transport.line.char_s
-        least_s = max(0.0, min(took_s, self._least_s.get(station.address, took_s)))
-        self._least_s[station.address] = least_s
-        held_up_s = max(0.0, took_s - least_s)
-        return received_s - held_up_s + min(held_up_s, JITTER_S) / 2.0, held_up_s
-
-    def _identify_all(self) -> dict[int, Identity]:
-        found: dict[int, Identity] = {}
-        silent = []
-        garbled: dict[int, bytes] = {}
-        for cable, amplifier in self._amplifiers.items():
-            try:
-                identity = NodeClient(self._dialogue, amplifier.address).identify()
-            except NoAnswerError as fault:
-                if fault.came:
-                    garbled[cable] = fault.came
-                    continue
-                silent.append(cable)
-                if len(silent) > 2 and not found:
-                    break
-                continue
-            check_identity(self._rig, cable, amplifier, identity, self.transport.name)
-            found[cable] = identity
-        if garbled:
-            raise self._garbled(garbled, silent)
-        if silent:
-            raise self._silent(silent, found)
-        return found
-
-    def _station(self, cable: int, identity: Identity, settings: dict[str, str]) -> Station:
+    def _station(self, cable: int, identity: Identity, state: State) -> Station:
         amplifier = self._amplifiers[cable]
         profile = profile_of(identity)
-        format_ = probe_format(
-            self._dialogue, amplifier.address, self._settings.cof, self._settings.csm
-        )
+        period_s = profile.period_s(self._settings.icr)
+        format_ = self._probe(amplifier.address, period_s)
         return Station(
             cable=cable,
             address=amplifier.address,
             identity=identity,
             profile=profile,
-            settings=settings,
+            state=state,
             format=format_,
             scaling=Scaling.of(amplifier, format_, self._zeros.get(cable, 0.0)),
-            period_s=profile.period_s(self._settings.icr),
-        )
-
-    def _garbled(self, came: dict[int, bytes], silent: list[int]) -> DeviceError:
-        cable = min(came)
-        what = f"cable {cable}: amplifier {self._amplifiers[cable].address:02d} answers garbled"
-        if len(came) > 1:
-            what += f", and {len(came) - 1} more do"
-        if silent:
-            addresses = (f"{self._amplifiers[each].address:02d}" for each in silent)
-            what += f", and nobody has address {', '.join(addresses)}"
-        return DeviceError(
-            f"{what} ({came[cable][:16]!r})",
-            allowed="one amplifier at each address",
-            where=self.transport.name,
-            remedy="two may share the address: `rig set-address` gives one of them another by its "
-            "serial number; else check wiring, baud and parity",
-        )
-
-    def _silent(self, cables: list[int], found: dict[int, Identity]) -> DeviceError:
-        where = self.transport.name
-        if not found:
-            return DeviceError(
-                f"no amplifier answers at {self.transport.line}",
-                where=where,
-                remedy="check power and wiring, and baud and parity under [bus] in the rig file",
-            )
-        missing = ", ".join(
-            f"cable {cable} (address {self._amplifiers[cable].address:02d})" for cable in cables
-        )
-        return DeviceError(
-            f"{len(cables)} of {len(self._amplifiers)} amplifiers do not answer: {missing}",
-            where=where,
-            remedy="check their power, wiring and addresses; `rig scan` lists who answers",
+            period_s=period_s,
         )

@@ -1,14 +1,15 @@
 """The `rig` command: what comes before, during and after a run."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdpr8.terminal import complain, entry, note, say_json, say_table
+from cdpr8.terminal import complain, entry, note, say_json
 from rig.command_amplifiers import set_address_command, set_baud_command
 from rig.command_before import doctor_command, pretension_command, zero_command
 from rig.command_runs import export_command, import_command, verify_command
+from rig.command_scan import SIMULATED, JsonOption, RigOption, SimulatedOption, load, scan_command
 
 if TYPE_CHECKING:
     from cdpr8.rigfile import Excitation, Rig
@@ -27,17 +28,7 @@ app = typer.Typer(
 main = entry(app)
 
 RUNS = Path("runs")
-SIMULATED = "simulated"
 LARGEST_SEED = 2**63 - 1
-
-RigOption = Annotated[
-    Path | None,
-    typer.Option("--rig", help="Rig file.  [default: ./rig.toml, else the packaged CDPR-8]"),
-]
-SimulatedOption = Annotated[
-    bool, typer.Option("--simulated", help="Use the simulated rig, whatever port is named.")
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
 
 @app.callback()
@@ -131,7 +122,7 @@ def record_command(
 
     if out is not None and name is not None:
         raise UsageError("--out and --name both name the run folder", allowed="one of them")
-    rig_path, rig_text, machine = _load(rig, simulated)
+    rig_path, rig_text, machine = load(rig, simulated)
     now = datetime.now(UTC)
     if until is not None:
         if duration is not None:
@@ -168,6 +159,7 @@ def record_command(
             taps=taps,
             beside_rig=files_beside(rig_text, rig_path.parent),
             command_log=log,
+            warn=lambda words: note(f"warning: {words}"),
         )
     if as_json:
         say_json(summary(recording))
@@ -177,67 +169,7 @@ def record_command(
         raise recording.fault
 
 
-@app.command("scan")
-def scan_command(
-    rig: RigOption = None, simulated: SimulatedOption = False, as_json: JsonOption = False
-) -> None:
-    """List the amplifiers that answer on the bus, with their settings and what they measure.
-
-    Example: rig scan --rig lab.toml
-    """
-    from rich.table import Table
-
-    from cdpr8.clock import RealClock
-    from cdpr8.errors import DeviceError
-    from rig.assignment import amplifiers
-    from rig.machine import open_machine
-    from rig.scan import SHOWN, scan
-
-    _, __, machine = _load(rig, simulated)
-    cables = {amplifier.address: cable for cable, amplifier in amplifiers(machine).items()}
-    opened = open_machine(machine, machine.excitation, RealClock())
-    try:
-        found = list(scan(opened.transport))
-    finally:
-        opened.close()
-    if as_json:
-        say_json(
-            [
-                {
-                    "address": node.address,
-                    "cable": cables.get(node.address),
-                    "identity": node.identity.text if node.identity else None,
-                    "settings": node.settings,
-                    "signal_mv_per_v": node.signal_mv_per_v,
-                    "trouble": node.trouble or None,
-                }
-                for node in found
-            ]
-        )
-    elif found:
-        table = Table(title=f"{len(found)} amplifiers on {opened.transport.name}")
-        for heading in ("address", "cable", "type", "serial", "mV/V", *SHOWN, "trouble"):
-            table.add_column(heading)
-        for node in found:
-            who = node.identity
-            table.add_row(
-                f"{node.address:02d}",
-                str(cables.get(node.address, "-")),
-                who.type if who else "?",
-                who.serial_number if who else "?",
-                "" if node.signal_mv_per_v is None else f"{node.signal_mv_per_v:+.4f}",
-                *(node.settings.get(name, "") for name in SHOWN),
-                node.trouble,
-            )
-        say_table(table)
-    if not found:
-        raise DeviceError(
-            f"no amplifier answers at {opened.transport.line}",
-            where=opened.transport.name,
-            remedy="check power and wiring, and baud and parity under [bus] in the rig file",
-        )
-
-
+app.command("scan")(scan_command)
 app.command("doctor")(doctor_command)
 app.command("zero")(zero_command)
 app.command("pretension")(pretension_command)
@@ -246,21 +178,6 @@ app.command("set-baud")(set_baud_command)
 app.command("verify")(verify_command)
 app.command("export")(export_command)
 app.command("import")(import_command)
-
-
-def _load(path: Path | None, simulated: bool) -> "tuple[Path, str, Rig]":
-    """The rig file's path and text, and the rig, simulated where that was asked for."""
-    from cdpr8.rigfile import find_rig_file, load_rig
-
-    path = find_rig_file(path)
-    rig = load_rig(path)
-    text = path.read_text(encoding="utf-8")
-    if simulated:
-        update: dict[str, Any] = {"bus": rig.bus.model_copy(update={"port": SIMULATED})}
-        if rig.camera is not None:
-            update["camera"] = rig.camera.model_copy(update={"source": SIMULATED})
-        rig = rig.model_copy(update=update)
-    return path, text, rig
 
 
 def _zeros(path: Path | None, rig_path: Path) -> "Zeros | None":

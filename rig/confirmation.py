@@ -21,11 +21,12 @@ exchange later a moving signal has gone on by a fraction, while another amplifie
 
 @dataclass
 class _Course:
-    """One cable's values so far: the last believed, and one that is doubted."""
+    """One cable's values so far: the last ones believed, and those that are doubted."""
 
     believed: Value | None = None
     before: Value | None = None
     doubted: Value | None = None
+    first: Value | None = None
 
     def expects(self, value: Value, limit: float) -> bool:
         """Whether a value is near the last one, or near where the last two were heading."""
@@ -39,6 +40,19 @@ class _Course:
             return False
         slope = (last.reading.digits - before.reading.digits) / (last.sampled_s - before.sampled_s)
         return abs(change - slope * (value.sampled_s - last.sampled_s)) <= limit
+
+    def begin(self, doubted: Value, value: Value, limit: float) -> list[tuple[Value, bool]]:
+        """Where nothing was believed before, three values in one line confirm each other."""
+        first, self.first = self.first, doubted
+        if first is None:
+            self.doubted = value
+            return []
+        began = _Course(believed=doubted, before=first)
+        if not began.expects(value, limit):
+            self.doubted = value
+            return [(first, False)]
+        self.before, self.believed, self.first = doubted, value, None
+        return [(first, True), (doubted, True), (value, True)]
 
     def believe(self, value: Value) -> None:
         """Go on from a value."""
@@ -67,6 +81,11 @@ class Confirmation:
             course.doubted = None
             change = abs(value.reading.digits - doubted.reading.digits)
             last = course.believed
+            if last is None and change > limit:
+                return course.begin(doubted, value, limit)
+            if course.first is not None:
+                settled.append((course.first, False))
+                course.first = None
             jump = 0 if last is None else abs(doubted.reading.digits - last.reading.digits)
             confirmed = change <= max(limit, KEPT_OF_JUMP * jump)
             settled.append((doubted, confirmed))
@@ -82,5 +101,5 @@ class Confirmation:
 
     def forget(self, cable: int) -> list[tuple[Value, bool]]:
         """Start anew with a cable; a value that is doubted still is not believed."""
-        course = self._courses.pop(cable, None)
-        return [] if course is None or course.doubted is None else [(course.doubted, False)]
+        course = self._courses.pop(cable, _Course())
+        return [(value, False) for value in (course.first, course.doubted) if value is not None]

@@ -3,7 +3,7 @@
 from typing import Any
 
 from cdpr8.terminal import say, say_table
-from rig.recorder import Recording
+from rig.ending import Recording
 
 
 def summary(recording: Recording) -> dict[str, Any]:

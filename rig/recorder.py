@@ -1,11 +1,8 @@
 """Recording a run: open the rig, start the bus, write what comes until the end."""
 
-import errno
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 from cdpr8.clock import Clock, RealClock, VirtualClock
 from cdpr8.errors import DataError, DeviceError, ToolkitError, UsageError
@@ -14,19 +11,22 @@ from cdpr8.runfolder import (
     ClockAnchor,
     EventKind,
     RunWriter,
-    StartRecord,
     StopRecord,
 )
 from rig.announcements import AnnouncementStream, announcements
+from rig.broadcast import open_bus
 from rig.bus import Bus
 from rig.command_log import CommandLog
 from rig.command_stream import CommandStream
+from rig.ending import Recording, disk_fault, reason, require_empty
+from rig.filter_delay import doubts
 from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
 from rig.reserve import Reserve
 from rig.schedule import run_by_time, run_in_threads
 from rig.scribe import DirectScribe, Scribe, ThreadedScribe
 from rig.start_record import start_record
+from rig.station import concerns
 from rig.stop import StopRequest
 from rig.streaming import StreamingStream, StreamPort, open_ports
 from rig.streaming.port import close_ports
@@ -40,33 +40,6 @@ LEAD_S = 0.25
 
 Watch = Callable[[Tally, float], None]
 """Shown the counts and the run's time, now and then; may stall, may fail."""
-
-
-@dataclass(frozen=True)
-class Recording:
-    """What was recorded.
-
-    Attributes
-    ----------
-    folder
-        The run folder.
-    start, stop
-        Its records.
-    fault
-        What ended it before its time, None where nothing did.
-    commands
-        Rows of the command log, None where none was recorded.
-    """
-
-    folder: Path
-    start: StartRecord
-    stop: StopRecord
-    fault: ToolkitError | None = None
-    commands: int | None = None
-
-    def rate_per_s(self, cable: int) -> float:
-        """Mean rate of a cable's samples."""
-        return self.stop.samples[cable] / self.stop.t_s if self.stop.t_s > 0 else 0.0
 
 
 def record(
@@ -87,6 +60,7 @@ def record(
     taps: Taps | None = None,
     beside_rig: Mapping[str, bytes] | None = None,
     command_log: CommandLog | None = None,
+    warn: Callable[[str], None] | None = None,
 ) -> Recording:
     """Record one run.
 
@@ -126,6 +100,8 @@ def record(
         Files that the rig file names, for the run folder: `cdpr8.rigfile.files_beside`.
     command_log
         The winch controller's log, opened; closed at the end. Needs a real clock.
+    warn
+        Told what a user must know before the run, though it goes on.
 
     Returns
     -------
@@ -147,11 +123,14 @@ def record(
     try:
         if command_log is not None and isinstance(clock, VirtualClock):
             raise UsageError("a command log comes in real time", remedy="leave --virtual out")
-        _require_empty(folder)
+        require_empty(folder)
         machine = machine or open_machine(rig, excitation, clock, seed=seed)
         session = _Session(machine, rig, clock, stop, excitation, alarm, zero_values(zeros))
         session.taps, session.command_log = taps, command_log
         check_zeros(zeros, {each.cable: each.identity.serial_number for each in session.stations})
+        if warn is not None:
+            for words in (*concerns(session.stations), *doubts(session.stations, rig)):
+                warn(words)
         machine.ready()
         if stop.requested:
             raise KeyboardInterrupt  # nothing has been recorded
@@ -173,7 +152,7 @@ def record(
         try:
             reserve = Reserve(folder)
         except OSError as error:
-            raise _disk_fault(error, folder) from None
+            raise disk_fault(error, folder) from None
         stop_record, fault = session.run(writer, reserve, now_s + LEAD_S, watch)
         return Recording(folder, start, stop_record, fault, session.commands)
     finally:
@@ -210,7 +189,7 @@ class _Session:
             self._ports = open_ports(machine.ports, rig, zeros)
             self.stations = tuple(port.station for port in self._ports)
         else:
-            self._bus = Bus(machine.transport, rig, zeros)
+            self._bus = open_bus(machine.transport, rig, zeros)
             self.stations = self._bus.start()
         if machine.camera is not None:
             import av  # noqa: F401  # now, not between the start record and the first sample
@@ -243,7 +222,7 @@ class _Session:
         except DeviceError as error:
             fault = error
         except OSError as error:
-            fault = _disk_fault(error, writer.folder)
+            fault = disk_fault(error, writer.folder)
         ended_s = self._clock.monotonic_s() - origin_s
         anchor = ClockAnchor(t_s=round(ended_s, 6), wall=self._clock.wall())
         reserve.release()
@@ -286,10 +265,10 @@ class _Session:
     ) -> tuple[StopRecord, ToolkitError | None]:
         scribe.close()
         if fault is None and isinstance(scribe.failure, OSError):
-            fault = _disk_fault(scribe.failure, writer.folder)
+            fault = disk_fault(scribe.failure, writer.folder)
         tally = self._tally
         record_ = StopRecord(
-            reason=_reason(self._stop, fault),
+            reason=reason(self._stop, fault),
             t_s=anchor.t_s,
             samples=tally.samples,
             frames=tally.frames,
@@ -299,37 +278,5 @@ class _Session:
         try:
             writer.stop(record_)
         except OSError as error:
-            fault = fault or _disk_fault(error, writer.folder)
+            fault = fault or disk_fault(error, writer.folder)
         return record_, fault
-
-
-def _reason(
-    stop: StopRequest, fault: ToolkitError | None
-) -> Literal["duration", "interrupted", "stopped_at_once", "device", "disk_full"]:
-    if isinstance(fault, DeviceError):
-        return "device"
-    if fault is not None:
-        return "disk_full"
-    if stop.requested:
-        return "stopped_at_once" if stop.at_once else "interrupted"
-    return "duration"
-
-
-def _require_empty(folder: Path) -> None:
-    """Told before any device is opened; `RunWriter` holds to it."""
-    if folder.is_dir() and any(folder.iterdir()):
-        raise DataError(
-            "the run folder is not empty; nothing recorded is ever overwritten",
-            where=str(folder),
-            remedy="choose another name",
-        )
-
-
-def _disk_fault(error: OSError, folder: Path) -> DataError:
-    full = error.errno == errno.ENOSPC
-    return DataError(
-        "the disk is full" if full else f"the run cannot be written: {error.strerror or error}",
-        where=str(folder),
-        remedy="what was written before stays readable; "
-        + ("free some space and record again" if full else "check the disk"),
-    )

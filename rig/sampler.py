@@ -8,6 +8,7 @@ import numpy as np
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile import Rig
 from rig.amplifier.frame import BadFrameError
+from rig.broadcast import open_bus
 from rig.bus import Bus
 from rig.machine import Machine
 from rig.station import Station
@@ -34,7 +35,7 @@ class Sampler:
         if self._ports:
             self.stations = tuple(port.station for port in self._ports)
         else:
-            self._bus = Bus(machine.transport, rig, zeros)
+            self._bus = open_bus(machine.transport, rig, zeros)
             self.stations = self._bus.start()
 
     def signals_mv_per_v(self, seconds: float) -> dict[int, list[float]]:

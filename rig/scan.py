@@ -4,16 +4,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cdpr8.errors import DeviceError
-from rig.amplifier import message
+from rig.amplifier import message, own_scaling
 from rig.amplifier.dialogue import Dialogue, NoAnswerError
 from rig.amplifier.node import NodeClient
 from rig.amplifier.profile import Identity
 from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V
-from rig.bus import ALL_STOP, STOP_WAIT_S
+from rig.bus import STOP_WAIT_S
 from rig.transport import Transport
 
-SHOWN = ("BDR", "COF", "ICR", "ASF", "FMD", "TAS", "NOV", "CSM")
-"""Settings that are read."""
+SHOWN = ("BDR", "COF", "ICR", "ASF", "FMD", "TAS", "TAV", "NOV", "ZSE", "ZTR", "CSM")
+"""Settings that are shown, each in a column."""
+
+READ = tuple(dict.fromkeys((*SHOWN, *own_scaling.JUDGED, *own_scaling.AS_FOUND)))
+"""Settings that are read; the others are told where they are not the factory's."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,7 @@ class Found:
     trouble
         What was wrong with the answer; empty where nothing was.
     signal_mv_per_v
-        What the cell gives now; None where a scaling inside the amplifier (NOV) hides it.
+        What the cell gives now; None where a scaling inside the amplifier hides it.
     """
 
     address: int
@@ -39,6 +42,15 @@ class Found:
     settings: dict[str, str]
     trouble: str = ""
     signal_mv_per_v: float | None = None
+
+    @property
+    def own_scaling(self) -> str:
+        """What the amplifier does to its digits, in words; empty before its settings were read."""
+        if not set(self.settings) >= set(READ):
+            return ""
+        told = own_scaling.concerns(self.settings, self.settings)
+        words = [*own_scaling.deviations(self.settings).values(), *told]
+        return "; ".join(words) or "factory"
 
 
 def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator[Found]:
@@ -52,14 +64,14 @@ def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator
         Which to ask.
     """
     dialogue = Dialogue(transport)
-    dialogue.tell(ALL_STOP)
+    dialogue.tell(message.ALL_STOP)
     transport.drain(STOP_WAIT_S)
     for address in addresses:
         node = NodeClient(dialogue, address)
         identity, settings = None, {}
         try:
-            identity = node.identify(tries=1)
-            for name in SHOWN:
+            identity = _identify(node, dialogue)
+            for name in READ:
                 settings[name] = node.read(name)
             signal_mv_per_v = _signal(node, settings)
             yield Found(address, identity, settings, signal_mv_per_v=signal_mv_per_v)
@@ -74,7 +86,20 @@ def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator
             yield Found(address, identity, settings, fault.what)
 
 
+def _identify(node: NodeClient, dialogue: Dialogue) -> Identity:
+    """Ask once; again where something else came, such as a value that waited to be fetched."""
+    try:
+        return node.identify(tries=1)
+    except NoAnswerError as fault:
+        if not fault.came:
+            raise
+        dialogue.settle()
+        return node.identify(tries=1)
+
+
 def _signal(node: NodeClient, settings: dict[str, str]) -> float | None:
-    if message.parse_integer(settings["NOV"].encode(), "NOV?") != 0:
+    """What the cell gives, from the factory curve."""
+    scaled = message.parse_integer(settings["NOV"].encode(), "NOV?") != 0
+    if scaled or own_scaling.deviations(settings):
         return None
     return node.measure() / DIGITS_PER_MV_PER_V

@@ -8,6 +8,7 @@ from cdpr8.provenance import versions
 from cdpr8.rigfile import Excitation, Rig
 from cdpr8.runfolder import CameraStart, ClockAnchor, Node, StartRecord
 from rig.camera import Camera
+from rig.filter_delay import filter_delay
 from rig.machine import Machine
 from rig.station import Station
 from rig.zeros import Zeros, taken
@@ -58,7 +59,8 @@ def start_record(
         rig_sha256=hashlib.sha256(rig_text.encode("utf-8")).hexdigest(),
         excitation=excitation,
         motion_start_known=machine.motion_known,
-        nodes=tuple(_node(station, zeros) for station in stations),
+        nodes=tuple(_node(station, zeros, rig) for station in stations),
+        sweep="streaming" if rig.bus.streaming else rig.bus.sweep,
         camera=_camera(machine.camera, rig),
         clock_anchor=anchor,
         command_log=command_log,
@@ -67,32 +69,28 @@ def start_record(
     )
 
 
-def _node(station: Station, zeros: Zeros | None) -> Node:
+def _node(station: Station, zeros: Zeros | None, rig: Rig) -> Node:
+    delay = filter_delay(station, rig)
+    # On a port of its own a value's time is fitted, and what of it is left is not stated.
+    sigma_s = None if rig.bus.streaming else station.period_s / math.sqrt(12.0)
     return Node.model_validate(
         {
             "cable": station.cable,
             "address": station.address,
             "identity": station.identity.text,
-            "settings": station.settings,
+            "settings": station.state.settings,
+            "found": station.state.found,
             "profile": station.profile.name,
             "value_bytes": station.format.length,
             "zero_mv_per_v": station.scaling.zero_mv_per_v,
             "zero_taken": taken(zeros, station.cable),
             "output_period_s": station.period_s,
-            "filter_delay_s": _filter_delay_s(station),
+            "sampling_sigma_s": sigma_s,
+            "filter_delay_s": delay.delay_s,
+            "filter_delay_sigma_s": delay.sigma_s,
+            "filter_delay_from": delay.source,
         }
     )
-
-
-def _filter_delay_s(station: Station) -> float:
-    """How late a steady change shows: first-order filter, then the mean over an output period.
-
-    First-order behaviour is a fair model of the filter (protocol note, section 8). Stored, and
-    applied where the run is read: the times in tension.csv are those of the bus.
-    """
-    cut_off_hz = station.profile.cut_offs_hz[int(station.settings["ASF"])]
-    filter_s = 0.0 if cut_off_hz is None else 1.0 / (2.0 * math.pi * cut_off_hz)
-    return filter_s + (station.period_s - station.profile.period_s(0)) / 2.0
 
 
 def _camera(camera: Camera | None, rig: Rig) -> CameraStart | None:

@@ -1,11 +1,14 @@
 """One amplifier as it stands, and one value of it."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from cdpr8 import CABLES
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Amplifier, Rig
-from rig.amplifier import message
+from rig.amplifier import message, own_scaling
 from rig.amplifier.frame import Reading, ValueFormat
+from rig.amplifier.node import State
 from rig.amplifier.profile import Identity, Profile, profile_of
 from rig.amplifier.scaling import Scaling
 
@@ -22,8 +25,8 @@ class Station:
         Its bus address.
     identity, profile
         Who it said it is, and the dialect that follows.
-    settings
-        Command -> answer, read back.
+    state
+        Its settings as read back, and what it was found with.
     format
         Of its values, probed.
     scaling
@@ -36,7 +39,7 @@ class Station:
     address: int
     identity: Identity
     profile: Profile
-    settings: dict[str, str]
+    state: State
     format: ValueFormat
     scaling: Scaling
     period_s: float
@@ -61,15 +64,16 @@ class Value:
     reading
         Digits and status.
     request_s
-        Just before it was asked for.
+        Just before it was asked for, or triggered.
     received_s
         When its last byte had come.
     sampled_s
-        Estimated sampling instant: the start of the answer less the mean age of a newest value.
-        Its standard uncertainty is the period over the square root of 12 (section 9).
+        Estimated sampling instant: the start of the answer less the mean age of a newest value, or
+        the end of the trigger and the mean wait for the next one. Its standard uncertainty is the
+        period over the square root of 12 (section 9).
     timed
         Whether it is known: not where the answer was held up by more than that, on the way to the
-        amplifier or on the way back.
+        amplifier or on the way back, nor where the value may be of an earlier trigger.
     """
 
     reading: Reading
@@ -77,6 +81,27 @@ class Value:
     received_s: float
     sampled_s: float
     timed: bool = True
+
+
+def concerns(stations: Sequence[Station]) -> list[str]:
+    """What a user must know of the amplifiers' own settings, told once for all that share it."""
+    told = ((each.cable, each.state.settings, each.state.found) for each in stations)
+    return by_cables(told)
+
+
+def by_cables(told: Iterable[tuple[int, Mapping[str, str], Mapping[str, str]]]) -> list[str]:
+    """The same from cable numbers, settings as read back and settings as found."""
+    cables: dict[str, list[str]] = {}
+    for cable, settings, found in told:
+        for words in own_scaling.concerns(settings, found):
+            cables.setdefault(words, []).append(str(cable))
+    return [f"{_whose(of)} {words}" for words, of in cables.items()]
+
+
+def _whose(cables: Sequence[str]) -> str:
+    if len(cables) == CABLES:
+        return "every amplifier"
+    return f"the amplifier of cable {', '.join(cables)}"
 
 
 def check_identity(

@@ -139,10 +139,10 @@ class BusStream:
                 station.cable, station.scaling, value
             ):
                 self._intake.value(station, settled, believed)
-            if self._confirmation.doubts(station.cable):
+            if self._bus.asks_again and self._confirmation.doubts(station.cable):
                 self._again = station
         now_s = self._clock.monotonic_s()
-        if now_s - began_s > PAUSE_S:
+        if now_s - began_s > PAUSE_S + self._bus.waits_s:
             self._intake.lose("pause")
             self._intake.event(
                 now_s, EventKind.PAUSE, f"the recorder stood still for {now_s - began_s:.2f} s"

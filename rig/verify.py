@@ -10,6 +10,7 @@ import numpy as np
 
 from cdpr8 import CABLES
 from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+from rig.station import by_cables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,6 +54,8 @@ def verify(run: Run) -> list[Finding]:
         *_ending(run),
         *_cables(run),
         *_skew(run),
+        *_amplifiers(run),
+        *_filter(run),
         *_losses(run),
         *_overloads(run),
         *_frames(run),
@@ -111,7 +114,37 @@ def _skew(run: Run) -> Iterator[Finding]:
         nearest = np.minimum(np.abs(times[after] - first), np.abs(times[after - 1] - first))
         spread = max(spread, float(np.median(nearest)))
     words = f"values of one sweep lie up to {1e3 * spread:.2f} ms apart; each has its own time"
+    if run.start.sweep == "broadcast":
+        period_s = max((node.output_period_s or 0.0 for node in run.start.nodes), default=0.0)
+        words = f"triggered together: one time a sweep, measured within {1e3 * period_s:.2f} ms"
     yield Finding(Verdict.OK, "skew", words)
+
+
+def _amplifiers(run: Run) -> Iterator[Finding]:
+    """What they do to their digits themselves, as they answered before the run."""
+    asked = [node for node in run.start.nodes if node.found]
+    if not asked:
+        return
+    told = by_cables((node.cable, node.settings, node.found) for node in asked)
+    words = "; ".join(told) or "digits at the factory's curve, no tare in them"
+    yield Finding(Verdict.WARN if told else Verdict.OK, "amplifiers", words)
+
+
+def _filter(run: Run) -> Iterator[Finding]:
+    """The delay that is taken off where the run is read, and where it comes from."""
+    told: dict[str, list[str]] = {}
+    for node in run.start.nodes:
+        if node.filter_delay_s is not None and node.filter_delay_from is not None:
+            words = f"{1e3 * node.filter_delay_s:.2f}"
+            if node.filter_delay_sigma_s is not None:
+                words += f" ± {1e3 * node.filter_delay_sigma_s:.2f}"
+            told.setdefault(f"{words} ms, {node.filter_delay_from}", []).append(str(node.cable))
+    if told:
+        alike = len(told) == 1
+        words = "; ".join(
+            each if alike else f"cable {', '.join(cables)}: {each}" for each, cables in told.items()
+        )
+        yield Finding(Verdict.OK, "delay", f"{words}; taken off where the run is read")
 
 
 def _losses(run: Run) -> Iterator[Finding]:

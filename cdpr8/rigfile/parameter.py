@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,10 @@ INERTIA = Kind("kg m2", relative_sigma=0.05)
 POINT = Kind("m", sigma=1e-3)
 LINE_DENSITY = Kind("kg/m", relative_sigma=0.05)
 DAMPING = Kind("1/s", relative_sigma=0.30)
+DELAY = Kind("s", relative_sigma=0.10)
+
+LONGEST_DELAY_S = 10.0
+"""Of an amplifier's filter: the slowest (0.05 Hz) delays by 3.2 s."""
 
 
 class _Row(BaseModel):
@@ -46,6 +50,18 @@ class Scalar(_Row):
     """One number with its uncertainty, unit and source."""
 
     value: float
+
+
+class DelayRow(Scalar):
+    """A delay in seconds, 0 to `LONGEST_DELAY_S`."""
+
+    @field_validator("value", "sigma", mode="before")
+    @classmethod
+    def _seconds(cls, raw: Any) -> Any:
+        number = isinstance(raw, int | float) and not isinstance(raw, bool)
+        if not number or not 0.0 <= raw <= LONGEST_DELAY_S:
+            raise ValueError(f"a number, 0 to {LONGEST_DELAY_S:g}: seconds, not ms")
+        return raw
 
 
 class Point(_Row):
@@ -92,3 +108,4 @@ Inertia = Annotated[Tensor, _row(INERTIA)]
 Position = Annotated[Point, _row(POINT)]
 LineDensity = Annotated[Scalar, _row(LINE_DENSITY)]
 Damping = Annotated[Scalar, _row(DAMPING)]
+Delay = Annotated[DelayRow, _row(DELAY)]

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from cdpr8 import CABLES
 from cdpr8.rigfile.parameter import (
     Damping,
+    Delay,
     Inertia,
     LineDensity,
     Mass,
@@ -44,6 +45,7 @@ class Amplifier(Section):
     sensitivity_mv_per_v: float = Field(default=1.0, gt=0.0, description="from the certificate")
     sign: Literal[1, -1] = 1
     noise_n: float = Field(default=0.005, ge=0.0, description="standard deviation at rest")
+    filter_delay_s: Delay | None = Field(default=None, description="measured; before the bus's")
 
 
 class CellPlace(StrEnum):
@@ -79,6 +81,11 @@ class Bus(Section):
         default=False,
         description="each amplifier has a serial port of its own and sends its values unasked",
     )
+    sweep: Literal["polled", "broadcast"] = Field(
+        default="polled",
+        description="how a value of each amplifier is taken: asked for one by one, or measured by "
+        "all after one broadcast trigger and then fetched one by one",
+    )
     checksum: bool = Field(
         default=True,
         description="a checksum guards each value, in the place of the amplifier's status byte; "
@@ -87,6 +94,20 @@ class Bus(Section):
     output_format: int = Field(default=24, ge=0, le=255, description="COF of the AED protocol")
     output_rate: int = Field(default=0, ge=0, le=7, description="ICR of the AED protocol")
     filter: int = Field(default=0, ge=0, le=10, description="ASF of the AED protocol")
+    filter_delay_s: Delay | None = Field(
+        default=None,
+        description="measured, of the amplifiers with this filter and output_rate; left out: first "
+        "order, from the filter's cut-off",
+    )
+
+    @model_validator(mode="after")
+    def _one_kind_of_sweep(self) -> Self:
+        if self.streaming and self.sweep == "broadcast":
+            raise ValueError(
+                'sweep = "polled" with streaming = true: on a port of its own each amplifier sends '
+                "unasked, and no broadcast reaches all of them"
+            )
+        return self
 
 
 class Intrinsics(Section):

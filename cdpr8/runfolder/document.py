@@ -8,7 +8,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
-from cdpr8.runfolder.records import StartRecord, StopRecord
+from cdpr8.runfolder.records import Node, StartRecord, StopRecord
 from cdpr8.runfolder.tables import (
     SCHEMA_VERSION,
     TABLES,
@@ -34,7 +34,8 @@ _MEANING: dict[type[IntFlag], dict[IntFlag, str]] = {
         TensionStatus.HOST_OVERLOAD: "beyond the host's own limit for the force cell",
         TensionStatus.STALE: "repeats an old value; not used",
         TensionStatus.UNCONFIRMED: "a jump that a second reading did not confirm; not used",
-        TensionStatus.UNTIMED: "came too late for its time to be known; not used",
+        TensionStatus.UNTIMED: "came too late for its time to be known, or may be of an earlier "
+        "trigger; not used",
     },
     FrameFlag: {
         FrameFlag.DROPPED_BEFORE: "a frame was lost before this one",
@@ -71,7 +72,7 @@ def schemas() -> dict[str, dict[str, Any]]:
 
 def page() -> str:
     """docs/run-folder.md."""
-    sections = [_HEAD]
+    sections = [_HEAD, _start_section()]
     sections += [_table_section(table) for table in TABLES]
     sections.append("## Status bits of tension.csv\n\n" + _bits(TensionStatus))
     sections.append("## Flag bits of frames.csv and pose.csv\n\n" + _bits(FrameFlag))
@@ -122,6 +123,17 @@ def _table_section(table: Table) -> str:
     )
     head = "| column | unit | meaning |\n|---|---|---|"
     return f"## {table.file}\n\n{table.meaning}\n\n{head}\n{rows}\n"
+
+
+def _start_section() -> str:
+    """The keys of start.json that do not speak for themselves, and those of each amplifier."""
+    rows = [
+        f"| `{prefix}{name}` | {field.description} |"
+        for prefix, record in (("", StartRecord), ("nodes[].", Node))
+        for name, field in record.model_fields.items()
+        if field.description
+    ]
+    return "## start.json\n\n| key | meaning |\n|---|---|\n" + "\n".join(rows) + "\n"
 
 
 def _bits(flags: type[IntFlag]) -> str:

@@ -21,7 +21,16 @@ class Node(Record):
     cable: int = Field(ge=1, le=8)
     address: int
     identity: str = Field(description="the answer to IDN?")
-    settings: dict[str, str] = Field(description="command -> answer, read back")
+    settings: dict[str, str] = Field(
+        description="command -> answer: written and read back, and the amplifier's own curve (LDW, "
+        "LWT), linearisation (LIC), zero at power-on (ZSE) and trigger (TRC); ? where it has none"
+    )
+    found: dict[str, str] = Field(
+        default_factory=dict,
+        description="command -> answer before anything was written: scaling (NOV), net or gross "
+        "(TAS), zero tracking (ZTR), tare (TAV, never changed), calibration weight (CWT), steps "
+        "(RSN)",
+    )
     zero_mv_per_v: float = Field(default=0.0, description="host-side zero")
     zero_taken: str = Field(default="never", description="when the zero was taken")
     profile: str | None = Field(default=None, description="the dialect, chosen by the identity")
@@ -29,10 +38,21 @@ class Node(Record):
     output_period_s: float | None = Field(
         default=None, description="between two values inside the amplifier, nominal"
     )
+    sampling_sigma_s: float | None = Field(
+        default=None,
+        description="standard uncertainty of the instants in tension.csv: on a bus the output "
+        "period over the square root of 12, each amplifier for itself",
+    )
     filter_delay_s: float | None = Field(
         default=None,
         description="of the amplifier's filter and averaging; taken off the times at reading, "
         "never in tension.csv",
+    )
+    filter_delay_sigma_s: float | None = Field(default=None, description="its standard uncertainty")
+    filter_delay_from: Literal["measured", "from the cut-off"] | None = Field(
+        default=None,
+        description="where it comes from: filter_delay_s of the rig file, or first order from the "
+        "filter's cut-off, with the mean over an output period",
     )
 
 
@@ -70,6 +90,11 @@ class StartRecord(Record):
         description="whether the start of the motion was recorded on the tension clock"
     )
     nodes: tuple[Node, ...] = ()
+    sweep: Literal["polled", "broadcast", "streaming"] | None = Field(
+        default=None,
+        description="how values were taken: asked for one by one; measured by all after one "
+        "broadcast trigger, and then fetched; or sent unasked on a port for each amplifier",
+    )
     camera: CameraStart | None = None
     clock_anchor: ClockAnchor
     import_map: str | None = Field(

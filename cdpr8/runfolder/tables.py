@@ -107,14 +107,14 @@ class Table:
 
 TENSION = Table(
     "tension.csv",
-    "One row a sample; the bus is polled in turn, so each sample has its own time.",
+    "One row a sample, with its own time; the eight of a broadcast sweep have one time.",
     (
         Column("t_s", "number", "estimated sampling instant, tension clock", "s", digits=6),
         Column("cable", "integer", "cable number, 1 to 8"),
         Column("digits", "integer", "raw value of the amplifier, never altered", optional=True),
         Column("tension_n", "number", "digits, scaled: positive pulls", "N", digits=6),
         Column("status", "integer", "status bits, see below"),
-        Column("request_s", "number", "when the value was asked for", "s", True, 6),
+        Column("request_s", "number", "when the value was asked for, or triggered", "s", True, 6),
         Column("received_s", "number", "when its last byte had come", "s", True, 6),
     ),
 )

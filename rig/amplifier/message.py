@@ -11,12 +11,22 @@ ACCEPTED = b"0\r\n"
 REFUSED = b"?\r\n"
 LINE_END = b"\r\n"
 
-_NUMBERS = re.compile(rb"[ +-]?\d+(,[ +-]?\d+)*\r\n")
+_NUMBERS = re.compile(rb" *[+-]?\d+(, *[+-]?\d+)*\r\n")
 
 BROADCAST = 98
 """`S98;` addresses every node, and none answers."""
 
 ADDRESSES = range(32)
+
+
+TRIGGER = b"S98;MSV?;"
+"""Has every node measure its next value and hold it until it is selected (section 9)."""
+
+MEASURE = b"MSV?0;"
+ALL_MEASURE = b";S98;MSV?0;"
+"""Has every node measure all the time."""
+
+ALL_STOP = b";S98;STP;"
 
 
 def command(mnemonic: str, *parameters: int | str) -> bytes:

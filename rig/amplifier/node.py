@@ -1,9 +1,9 @@
 """The client of one amplifier: select it, identify it, set it and read every setting back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from cdpr8.errors import DeviceError
-from rig.amplifier import message
+from rig.amplifier import message, own_scaling
 from rig.amplifier.dialogue import TRIES, Dialogue
 from rig.amplifier.profile import Identity
 
@@ -58,6 +58,22 @@ class Settings:
         )
 
 
+@dataclass(frozen=True)
+class State:
+    """A node as it stands before a run; equal to another where it gives the same values.
+
+    Attributes
+    ----------
+    settings
+        Command -> answer: what was written, read back, and what the node does to its digits.
+    found
+        What `own_scaling.AS_FOUND` answered before anything was written.
+    """
+
+    settings: dict[str, str]
+    found: dict[str, str] = field(compare=False)
+
+
 class NodeClient:
     """One amplifier on the bus.
 
@@ -101,11 +117,9 @@ class NodeClient:
         DeviceError
             The node refuses it.
         """
-        request = message.command(mnemonic, *parameters)
-        answer = self._dialogue.ask(request, message.is_acknowledgement)
-        if answer != message.ACCEPTED:
+        if not self._accepts(mnemonic, *parameters):
             raise self._fault(
-                f"{request.decode()} was answered with {answer.decode('ascii', 'replace').strip()}",
+                f"{message.command(mnemonic, *parameters).decode()} was answered with ?",
                 allowed="0 (accepted)",
             )
 
@@ -124,37 +138,62 @@ class NodeClient:
             self.write("COF", format_)
         return message.parse_integer(answer, "MSV?")
 
-    def configure(self, settings: Settings) -> dict[str, str]:
+    def configure(self, settings: Settings) -> State:
         """Write the settings, read each back, and return what was read.
 
         Raises
         ------
         DeviceError
-            A setting is refused, or reads back as something else.
+            A setting is refused, or reads back as something else; or the node has a scaling of its
+            own, with which its digits would be another force.
         """
-        found = {"COF": self.read("COF")}
-        self.write("SPW", PASSWORD)
-        found["NOV"] = self.read("NOV")
+        # Before the password, which lets a question that loses its ? change what it asks for.
+        own = {mnemonic: self.read(mnemonic) for mnemonic in own_scaling.JUDGED}
+        found = {mnemonic: self.read(mnemonic) for mnemonic in own_scaling.AS_FOUND}
+        self._require_factory_curve(own)
+        read: dict[str, str] = {"NOV": found["NOV"]}
         if message.parse_integer(found["NOV"].encode(), "NOV?") != 0:
             # The scaling on the host stands on the factory curve: NOV=0 (section 6).
-            self._set("NOV", 0, found)
+            self._set("NOV", 0, read)
         for mnemonic, value in settings.commands():
-            self._set(mnemonic, value, found)
-        return found
+            self._set(mnemonic, value, read)
+        return State(read | own, found)
 
-    def _set(self, mnemonic: str, value: int, found: dict[str, str]) -> None:
-        self.write(mnemonic, value)
-        found[mnemonic] = self.read(mnemonic)
-        if message.parse_integer(found[mnemonic].encode(), f"{mnemonic}?") != value:
-            raise self._fault(
-                f"{mnemonic} reads {found[mnemonic]} after {value} was accepted", allowed=str(value)
+    def _require_factory_curve(self, own: dict[str, str]) -> None:
+        wrong = own_scaling.deviations(own)
+        if wrong:
+            raise DeviceError(
+                "its digits would be scaled wrong: " + "; ".join(wrong.values()),
+                allowed=own_scaling.allowed(wrong),
+                where=self._where,
+                remedy=own_scaling.remedy(own, self.address, PASSWORD),
             )
+
+    def _set(self, mnemonic: str, value: int, read: dict[str, str]) -> None:
+        if not self._accepts(mnemonic, value):
+            # Given only where something needs it: it stays given until the node is switched off.
+            self.write("SPW", PASSWORD)
+            self.write(mnemonic, value)
+        read[mnemonic] = self.read(mnemonic)
+        if message.parse_integer(read[mnemonic].encode(), f"{mnemonic}?") != value:
+            raise self._fault(
+                f"{mnemonic} reads {read[mnemonic]} after {value} was accepted", allowed=str(value)
+            )
+
+    def _accepts(self, mnemonic: str, *parameters: int | str) -> bool:
+        request = message.command(mnemonic, *parameters)
+        answer = self._dialogue.ask(request, message.is_acknowledgement)
+        return answer == message.ACCEPTED
+
+    @property
+    def _where(self) -> str:
+        return f"amplifier {self.address:02d} on {self._dialogue.transport.name}"
 
     def _fault(self, what: str, *, allowed: str) -> DeviceError:
         return DeviceError(
             what,
             allowed=allowed,
-            where=f"amplifier {self.address:02d} on {self._dialogue.transport.name}",
+            where=self._where,
             remedy="the amplifier is of another kind than the rig file's [bus] section assumes, "
             "or locked by another password",
         )

@@ -5,7 +5,8 @@ from collections import deque
 from collections.abc import Sequence
 
 from rig.simulated.faults import LineFaults
-from rig.simulated.node import Answer, SimulatedNode
+from rig.simulated.memory import Answer
+from rig.simulated.node import SimulatedNode
 from rig.transport import Chunk, LineSettings
 
 _SELECT = re.compile(rb"S(\d\d)$")
@@ -14,6 +15,9 @@ _IGNORED = bytes(range(0x21))
 """Bytes up to 0x20 are ignored inside a command (protocol note, section 2)."""
 
 LONGEST_COMMAND = 64
+
+BACKLOG = 2
+"""Values that wait in a node while the line is taken."""
 
 
 class SimulatedBus:
@@ -84,7 +88,9 @@ class SimulatedBus:
                 if at_s > until_s:
                     break
                 node.streamed()
-                self._send(frame, at_s)
+                # A node skips values that its line is too slow for (status bit 7, section 5).
+                if self._answer_free_s - at_s <= BACKLOG * len(frame) * self.line.char_s:
+                    self._send(frame, at_s)
         return self._outgoing
 
     def _pass_on(self, text: bytes, selection: re.Match[bytes] | None, now_s: float) -> None:

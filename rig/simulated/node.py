@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum
 
 from rig.amplifier.frame import (
@@ -13,30 +12,37 @@ from rig.amplifier.frame import (
     WITHOUT_CRLF,
     FrameFormat,
 )
-from rig.amplifier.message import ACCEPTED, BROADCAST, REFUSED
-from rig.amplifier.node import PASSWORD
+from rig.amplifier.message import ACCEPTED, BROADCAST
 from rig.amplifier.profile import FIT, Profile
 from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V as TEXT_DIGITS_PER_MV_PER_V
 from rig.amplifier.text_frame import TextFormat, formats_of
-from rig.simulated.registers import REGISTERS, factory_settings
+from rig.simulated.conversion import FACTORY_SPAN, MILLION, converted
+from rig.simulated.memory import (
+    COMMAND_ERROR,
+    COMMAND_S,
+    EXECUTION_ERROR,
+    Answer,
+    NodeMemory,
+)
+from rig.simulated.registers import CURVE, REGISTERS, factory_settings
 from rig.simulated.signal import NodeSignal
-
-COMMAND_S = 0.002
-"""Answer time of ordinary commands; documented is "below 15 ms"."""
 
 TURNAROUND_S = 20e-6
 """From the end of a request to the start of a value in bus mode."""
 
+CURVE_S = 4.0
+"""How long LDW and LWT take to measure; documented is up to 4.2 s."""
+
 RESTART_S = 2.0
 """How long a node is deaf after RES."""
+
+ZERO_RANGES = (0.0, 0.02, 0.05, 0.1, 0.2)
+"""Parts of the nominal value within which ZSE takes a zero (section 4)."""
 
 TEXT_PER_DIGIT = TEXT_DIGITS_PER_MV_PER_V / DIGITS_PER_MV_PER_V[4]
 TEXT_SEPARATORS_FROM = 128
 
 _COMMAND = re.compile(r'([A-Z]{3})(\?)?([^"]*(?:"[^"]*")?)$')
-
-_EXECUTION_ERROR = 16
-_COMMAND_ERROR = 32
 
 
 class Selection(Enum):
@@ -47,15 +53,7 @@ class Selection(Enum):
     ALL = "all nodes: obey, do not answer"
 
 
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """What a node sends, and how long after the request its first bit starts."""
-
-    data: bytes
-    delay_s: float
-
-
-class SimulatedNode:
+class SimulatedNode(NodeMemory):
     """One node.
 
     Parameters
@@ -88,29 +86,39 @@ class SimulatedNode:
         crlf_in_stream: bool = True,
     ) -> None:
         self.signal = signal
-        self.profile = profile
-        self.serial_number = serial_number
+        line = {"ADR": address, "BAUD": baud, "PARITY": parity}
+        super().__init__(profile, serial_number, factory_settings() | line)
         self.powered = True
         self._type_name = type_name
         self._crlf_in_bus_mode = crlf_in_bus_mode
         self._crlf_in_stream = crlf_in_stream
-        self._eeprom = factory_settings() | {"ADR": address, "BAUD": baud, "PARITY": parity}
         self.power_on(0.0)
 
     def power_on(self, ready_s: float) -> None:
         """Start from the EEPROM; deaf until `ready_s`."""
-        self.settings = dict(self._eeprom)
+        self.reload()
         self.measuring = False
         self.remaining = 0
-        self._unlocked = False
-        self._errors = 0
         self._ready_s = ready_s
         # A node is active as if selected, unless it streams from power-on (section 3).
         streams = self.settings["COF"] >= POWER_ON_STREAM
         self._selection = Selection.OTHER if streams else Selection.THIS
         self._last_number = -1
+        # Number and time of a value that a broadcast trigger had it measure, until it is fetched.
+        self._held: tuple[int, float] | None = None
+        self._zero = 0
+        if self.settings["ZSE"]:
+            self._set_zero(ready_s)
         if streams:
             self._measure(None, ready_s)
+
+    def _set_zero(self, now_s: float) -> None:
+        """Take off what the cell gives at power-on, where it is within the range of ZSE."""
+        icr = self.settings["ICR"]
+        digits, _ = self.signal.value(self.signal.number_at(now_s, icr), icr, self.settings["ASF"])
+        nominal = FACTORY_SPAN / 2  # of a 1 mV/V cell: NOV is 0
+        if abs(digits) <= ZERO_RANGES[self.settings["ZSE"]] * nominal:
+            self._zero = digits
 
     def brown_out(self, now_s: float) -> None:
         """Lose the supply for a moment: factory settings, as after a worn-out EEPROM."""
@@ -130,7 +138,7 @@ class SimulatedNode:
     @property
     def streaming(self) -> bool:
         """Whether it sends values unasked."""
-        return self.measuring and not self.settings["COF"] & BUS_MODE
+        return self.measuring and not self.settings["COF"] & BUS_MODE and not self.settings["TRC0"]
 
     def select(self, address: int, now_s: float) -> Answer | None:
         """Take `Sxx;`."""
@@ -139,7 +147,13 @@ class SimulatedNode:
             return None
         mine = address == self.settings["ADR"]
         self._selection = Selection.THIS if mine else Selection.OTHER
-        if mine and self.in_bus_mode:
+        if mine and self._held is not None:
+            number, ready_s = self._held
+            if now_s < ready_s:
+                return None  # asked too early: what real ones do then is not documented
+            self._held = None
+            return Answer(self.frame(number), TURNAROUND_S)
+        if mine and self.in_bus_mode and not self.settings["TRC0"]:
             number = self.signal.number_at(now_s + TURNAROUND_S, self.settings["ICR"])
             return Answer(self.frame(number), TURNAROUND_S)
         return None
@@ -155,10 +169,7 @@ class SimulatedNode:
         """A measured value in the format that is set."""
         settings = self.settings
         digits, status = self.signal.value(number, settings["ICR"], settings["ASF"])
-        if settings["TAS"] == 0:
-            digits -= settings["TAV"]
-        if settings["NOV"]:
-            digits = round(digits * settings["NOV"] / (2 * DIGITS_PER_MV_PER_V[4]))
+        digits = converted(digits - self._zero, settings)
         cof = settings["COF"]
         base = cof % BUS_MODE
         if base not in BINARY_BASES:
@@ -190,12 +201,14 @@ class SimulatedNode:
     def _execute(self, text: str, now_s: float) -> Answer | None:
         match = _COMMAND.match(text)
         if match is None:
-            return self._refuse(_COMMAND_ERROR)
+            return self._refuse(COMMAND_ERROR)
         name, asked, parameters = match.groups()
         if name in REGISTERS:
+            if name in CURVE and not (asked or parameters):
+                return self._measure_curve(name, now_s)
             return self._show(name) if asked else self._write(name, parameters)
         if name not in _METHODS:
-            return self._refuse(_COMMAND_ERROR)
+            return self._refuse(COMMAND_ERROR)
         method: Callable[[bool, str, float], Answer | None] = getattr(self, f"_{name.lower()}")
         return method(bool(asked), parameters, now_s)
 
@@ -207,7 +220,7 @@ class SimulatedNode:
 
     def _msv(self, asked: bool, parameters: str, now_s: float) -> Answer | None:
         if not asked:
-            return self._refuse(_COMMAND_ERROR)
+            return self._refuse(COMMAND_ERROR)
         return self._measure(parameters or None, now_s)
 
     def _measure(self, count: str | None, now_s: float) -> Answer | None:
@@ -215,70 +228,32 @@ class SimulatedNode:
         self._last_number = self.signal.number_at(now_s, icr)
         if count is None and not self.settings["COF"] & BUS_MODE:
             number = self._last_number + 1
-            return Answer(self.frame(number), max(0.0, self.signal.sampled_s(number, icr) - now_s))
+            ready_s = self.signal.sampled_s(number, icr)
+            if self._selection is Selection.ALL:
+                self._held = (number, ready_s)
+                return None
+            return Answer(self.frame(number), max(0.0, ready_s - now_s))
         if count is not None and not count.isdecimal():
-            return self._refuse(_EXECUTION_ERROR)
+            return self._refuse(EXECUTION_ERROR)
         self.remaining = int(count or 0)
         self.measuring = True
         return None
 
-    def _show(self, name: str) -> Answer:
-        value, width = self.settings[name], REGISTERS[name].width
-        return Answer(f"{value:0{width}d}\r\n".encode(), COMMAND_S)
-
-    def _write(self, name: str, parameters: str) -> Answer:
-        register = REGISTERS[name]
-        words = parameters.split(",", 1)
-        try:
-            value = int(float(words[0]))
-        except ValueError:
-            return self._refuse(_COMMAND_ERROR)
-        high = register.high
-        if name == "ASF":
-            high = len(self.profile.cut_offs_hz) - 1
-        bus_mode_text = name == "COF" and value & BUS_MODE and value % BUS_MODE not in BINARY_BASES
-        locked = register.locked and not self._unlocked
-        if not register.low <= value <= high or bus_mode_text or locked:
-            return self._refuse(_EXECUTION_ERROR)
-        if name == "ADR" and len(words) > 1 and words[1].strip('"') != self.serial_number:
-            return self._refuse(_EXECUTION_ERROR)
-        self.settings[name] = value
-        return Answer(ACCEPTED, COMMAND_S)
+    def _measure_curve(self, name: str, now_s: float) -> Answer:
+        """LDW or LWT without a value: the present input is the point of the curve."""
+        if not self._unlocked:
+            return self._refuse(EXECUTION_ERROR)
+        icr = self.settings["ICR"]
+        digits, _ = self.signal.value(self.signal.number_at(now_s, icr), icr, self.settings["ASF"])
+        self.settings[name] = round(MILLION * digits / FACTORY_SPAN)
+        self.settings["TAV"] = 0
+        return Answer(ACCEPTED, CURVE_S)
 
     def _idn(self, asked: bool, _: str, __: float) -> Answer:
         if not asked:
-            return self._refuse(_COMMAND_ERROR)
+            return self._refuse(COMMAND_ERROR)
         text = f'HBM,"{self._type_name:<15}","{self.serial_number:<7}",P20\r\n'
         return Answer(text.encode(), COMMAND_S)
-
-    def _bdr(self, asked: bool, parameters: str, _: float) -> Answer:
-        settings = self.settings
-        if not asked:
-            try:
-                baud, parity = (int(word) for word in parameters.split(","))
-            except ValueError:
-                return self._refuse(_COMMAND_ERROR)
-            if baud not in self.profile.bauds or parity not in (0, 1):
-                return self._refuse(_EXECUTION_ERROR)
-            settings["BAUD"], settings["PARITY"] = baud, parity
-            return Answer(ACCEPTED, COMMAND_S)
-        return Answer(f"{settings['BAUD']},{settings['PARITY']}\r\n".encode(), COMMAND_S)
-
-    def _spw(self, _: bool, parameters: str, __: float) -> Answer:
-        self._unlocked = parameters.strip('"') == PASSWORD
-        return Answer(ACCEPTED, COMMAND_S) if self._unlocked else self._refuse(_EXECUTION_ERROR)
-
-    def _tdd(self, _: bool, parameters: str, __: float) -> Answer:
-        line = {name: self.settings[name] for name in ("BAUD", "PARITY")}
-        if parameters == "0":
-            self.settings = factory_settings() | line
-        elif parameters == "1":
-            self._eeprom = dict(self.settings)
-        elif parameters == "2":
-            self.settings = dict(self._eeprom) | line
-        else:
-            return self._refuse(_EXECUTION_ERROR)
-        return Answer(ACCEPTED, COMMAND_S)
 
     def _tar(self, _: bool, __: str, now_s: float) -> Answer:
         icr = self.settings["ICR"]
@@ -286,14 +261,6 @@ class SimulatedNode:
         self.settings["TAV"] = self.signal.value(number, icr, self.settings["ASF"])[0]
         self.settings["TAS"] = 0
         return Answer(ACCEPTED, 2.0 * self.signal.period_s(icr) + COMMAND_S)
-
-    def _esr(self, _: bool, __: str, ___: float) -> Answer:
-        errors, self._errors = self._errors, 0
-        return Answer(f"{errors:03d}\r\n".encode(), COMMAND_S)
-
-    def _refuse(self, error: int) -> Answer:
-        self._errors |= error
-        return Answer(REFUSED, COMMAND_S)
 
     def _text(self, digits: int, status: int) -> bytes:
         """COF 1, 3, 9 and 11: value, address and status as text (section 5)."""
@@ -303,4 +270,4 @@ class SimulatedNode:
         return frame.replace(b",", bytes([self.settings["TEX"] % TEXT_SEPARATORS_FROM]))
 
 
-_METHODS = frozenset({"STP", "RES", "MSV", "IDN", "BDR", "SPW", "TDD", "TAR", "ESR"})
+_METHODS = frozenset({"STP", "RES", "MSV", "IDN", "BDR", "SPW", "TDD", "TAR", "ESR", "LIC", "TRC"})

@@ -35,6 +35,10 @@ REGISTERS = {
     "ASF": Register(2, 0, 10, 5),
     "FMD": Register(1, 0, 1, 0),
     "NOV": Register(7, 0, 1599999, 0, locked=True),
+    "LDW": Register(8, -1599999, 1599999, 0, locked=True),
+    "LWT": Register(8, -1599999, 1599999, 1_000_000, locked=True),
+    "CWT": Register(8, 0, 1599999, 1_000_000, locked=True),
+    "RSN": Register(3, 1, 100, 1),
     "TAS": Register(1, 0, 1, 1),
     "TAV": Register(8, -8388607, 8388607, 0),
     "ZSE": Register(1, 0, 4, 0),
@@ -44,6 +48,17 @@ REGISTERS = {
     "CRC": Register(8, -8388607, 8388607, 0),
 }
 
+CURVE = ("LDW", "LWT")
+"""The user's characteristic curve: where it is 0 and where 1 000 000."""
+
+LINEARISATION = {"LIC0": 0, "LIC1": 1_000_000, "LIC2": 0, "LIC3": 0}
+"""Coefficients of the powers 0 to 3, in millionths, and their factory values."""
+
+TRIGGER = {"TRC0": 0, "TRC1": 0, "TRC2": 0, "TRC3": 0, "TRC4": 0}
+"""Parameters of the trigger: active, mode, level and two times (widths as a FIT answers)."""
+
+TRIGGER_WIDTHS = (1, 1, 8, 2, 2)
+
 FACTORY_BAUD = 9600
 FACTORY_PARITY = 1
 
@@ -51,4 +66,4 @@ FACTORY_PARITY = 1
 def factory_settings() -> dict[str, int]:
     """All settings as a node leaves the factory, with its line (BAUD, PARITY)."""
     settings = {name: register.factory for name, register in REGISTERS.items()}
-    return settings | {"BAUD": FACTORY_BAUD, "PARITY": FACTORY_PARITY}
+    return settings | LINEARISATION | TRIGGER | {"BAUD": FACTORY_BAUD, "PARITY": FACTORY_PARITY}

@@ -35,7 +35,6 @@ LATE_S = 0.01
 JUST = 0.05
 """Of a period: how much late a value may be and still count as on time."""
 
-START = message.command("MSV?", 0)
 STOP = message.END + message.command("STP")
 
 
@@ -84,7 +83,7 @@ class StreamPort:
         self._number = -1
         self._received = self._last_end = 0
         self.heard_s = self.transport.clock.monotonic_s()
-        self._dialogue.tell(START)
+        self._dialogue.tell(message.MEASURE)
 
     def stop(self) -> None:
         """End the stream and wait for silence."""
@@ -105,7 +104,7 @@ class StreamPort:
         try:
             if node.identify(tries=1) != self.station.identity:
                 return False
-            if node.configure(self._settings) != self.station.settings:
+            if node.configure(self._settings) != self.station.state:
                 return False
         except DeviceError:
             return False
@@ -177,7 +176,7 @@ class StreamPort:
         identity = node.identify()
         check_identity(self._rig, self._cable, self._amplifier, identity, self.transport.name)
         profile = profile_of(identity)
-        settings = node.configure(self._settings)
+        state = node.configure(self._settings)
         period_s = profile.period_s(self._settings.icr)
         format_ = self._probe(period_s)
         return Station(
@@ -185,7 +184,7 @@ class StreamPort:
             address=self._amplifier.address,
             identity=identity,
             profile=profile,
-            settings=settings,
+            state=state,
             format=format_,
             scaling=Scaling.of(self._amplifier, format_, zero_mv_per_v),
             period_s=period_s,
@@ -196,7 +195,7 @@ class StreamPort:
         amplifier, clock, line = self._amplifier, self.transport.clock, self.transport.line
         formats = formats_of(self._settings.cof, self._settings.csm, amplifier.address)
         self._check_speed(min(each.length for each in formats), period_s)
-        self._dialogue.tell(START)
+        self._dialogue.tell(message.MEASURE)
         count = PROBED * formats[0].length
         wait_s = count * line.char_s + 2 * PROBED * period_s
         raw = self.transport.read(count, clock.monotonic_s() + wait_s).data

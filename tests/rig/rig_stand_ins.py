@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from cdpr8.clock import Clock, VirtualClock
 from cdpr8.rigfile import Excitation, Rig
 from cdpr8.runfolder import BAD_TENSION, Run
+from rig.ending import Recording
 from rig.machine import Machine
-from rig.recorder import Recording, record
+from rig.recorder import record
 from rig.simulated.bus import SimulatedBus
 from rig.simulated.faults import LineFaults
 from rig.simulated.rig import assemble, simulated_nodes

@@ -15,7 +15,7 @@ from cdpr8.errors import DeviceError
 from cdpr8.rigfile import Rig
 from rig.amplifier.dialogue import LATE_S, Dialogue, NoAnswerError
 from rig.amplifier.maintenance import change_baud, readdress
-from rig.amplifier.node import NodeClient, Settings
+from rig.amplifier.node import NodeClient, Settings, State
 from rig.amplifier.probe import probe_format
 from rig.amplifier.profile import AD101B, AD104, FIT, Identity, profile_of
 from rig.bus import Bus
@@ -28,9 +28,18 @@ from rig.transport import LineSettings, MemoryTransport
 OK = b"0\r\n"
 SET_UP = [
     (b";S01;IDN?;", b'HBM,"AD104          ","1234567",P20\r\n'),
-    (b"COF?;", b"009\r\n"),
-    (b'SPW"AED";', OK),
+    # What it does to its digits, before any password; as a FIT answers.
+    (b"LDW?;", b"0000000\r\n"),
+    (b"LWT?;", b"1000000\r\n"),
+    (b"LIC?;", b"0000000, 1000000, 0000000, 0000000\r\n"),
+    (b"ZSE?;", b"00\r\n"),
+    (b"TRC?;", b"0,0, 0000000,00,00\r\n"),
     (b"NOV?;", b"0000000\r\n"),
+    (b"TAS?;", b"0\r\n"),
+    (b"ZTR?;", b"0\r\n"),
+    (b"TAV?;", b"0001234\r\n"),
+    (b"CWT?;", b"1000000, 1000000\r\n"),
+    (b"RSN?;", b"?\r\n"),
     (b"FMD0;", OK),
     (b"FMD?;", b"0\r\n"),
     (b"ASF1;", OK),
@@ -51,35 +60,48 @@ SET_UP = [
 SETTINGS = Settings(cof=24, icr=0, asf=1)
 
 
-def set_up(pairs: list[tuple[bytes, bytes]]) -> tuple[Conversation, dict[str, str]]:
+def set_up(pairs: list[tuple[bytes, bytes]]) -> tuple[Conversation, State]:
     script = Conversation(pairs)
     node = NodeClient(Dialogue(script), 1)
     node.identify()
     return script, node.configure(SETTINGS)
 
 
+FMD = SET_UP.index((b"FMD0;", OK))
+
+
 def test_a_node_is_set_up_as_the_note_says() -> None:
-    script, settings = set_up(SET_UP)
+    script, state = set_up(SET_UP)
     assert script.over
-    assert settings["COF"] == "024"
-    assert settings["ASF"] == "01"
+    assert state.settings["COF"] == "024"
+    assert state.settings["ASF"] == "01"
+    assert state.settings["LWT"] == "1000000"
+    assert state.found["TAV"] == "0001234"
 
 
 def test_a_user_scaling_is_taken_out_with_the_password() -> None:
     pairs = list(SET_UP)
-    pairs[3:4] = [(b"NOV?;", b"0050000\r\n"), (b"NOV0;", OK), (b"NOV?;", b"0000000\r\n")]
-    script, _ = set_up(pairs)
+    pairs[FMD:FMD] = [
+        (b"NOV0;", b"?\r\n"),
+        (b'SPW"AED";', OK),
+        (b"NOV0;", OK),
+        (b"NOV?;", b"0000000\r\n"),
+    ]
+    pairs[pairs.index((b"NOV?;", b"0000000\r\n"))] = (b"NOV?;", b"0050000\r\n")
+    script, state = set_up(pairs)
     assert script.over
+    assert (state.settings["NOV"], state.found["NOV"]) == ("0000000", "0050000")
 
 
 def test_a_refused_setting_is_told() -> None:
-    pairs = [*SET_UP[:6], (b"ASF1;", b"?\r\n")]
+    refused = (b"ASF1;", b"?\r\n")
+    pairs = [*SET_UP[: FMD + 2], refused, (b'SPW"AED";', OK), refused]
     with pytest.raises(DeviceError, match=r"ASF1; was answered with \?"):
         set_up(pairs)
 
 
 def test_a_setting_that_reads_back_wrong_is_refused() -> None:
-    pairs = [*SET_UP[:7], (b"ASF?;", b"05\r\n")]
+    pairs = [*SET_UP[: FMD + 3], (b"ASF?;", b"05\r\n")]
     with pytest.raises(DeviceError, match="ASF reads 05 after 1 was accepted"):
         set_up(pairs)
 
@@ -115,10 +137,10 @@ def test_a_late_answer_is_not_taken_for_that_to_the_next_question(
     for address in (7, 8):
         node = NodeClient(dialogue, address)
         assert node.identify().serial_number == f"SIM{address:04d}"
-        found = node.configure(Settings(cof=24, icr=0, asf=1, csm=1))
+        found = node.configure(Settings(cof=24, icr=0, asf=1, csm=1)).settings
         assert found == found | {"TEX": "172", "CSM": "1", "FMD": "0", "ASF": "01", "COF": "024"}
         for mnemonic, answer in found.items():
-            if mnemonic != "COF":
+            if mnemonic not in ("COF", "LIC", "TRC"):
                 assert bus.nodes[address - 1].settings[mnemonic] == int(answer)
     assert late == []
 
@@ -317,7 +339,7 @@ def test_the_checksum_replaces_the_status_where_there_is_no_parity(rig: Rig) -> 
     plain = with_bus(rig, parity="none")
     _, transport = simulated_line(plain)
     station = Bus(transport, plain).start()[0]
-    assert station.settings["CSM"] == "1"
+    assert station.state.settings["CSM"] == "1"
     assert simulated_nodes(rig, None, 0.0, 0)[0].settings["PARITY"] == 1
 
 

