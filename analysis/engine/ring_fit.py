@@ -29,7 +29,10 @@ THERE = 1.02
 """A squared misfit of a sample below this, on average, needs no further step."""
 
 WORTH_A_STEP = 2.0
-"""Nor one that promises less than this of the squared misfit."""
+"""Nor one that promises less than this of the squared misfit,"""
+
+WORTH_ON_THE_WAY = 0.003
+"""or, in a window that is not the last, than this share of it."""
 
 STEP = 0.02
 """Of the difference that tells what a parameter does, in sigmas: longer ones turn the phase."""
@@ -244,7 +247,8 @@ class _Way:
             self._columns = (self.here - rows) / self._steps[:, None]
         if self._step(inside):
             return True
-        if fresh:
+        # On the way, near enough is near enough.
+        if fresh or (share < 1.0 and self.left(share) < FAINT):
             return False
         self._columns = None
         return self.step(share)
@@ -257,9 +261,11 @@ class _Way:
         right = columns @ here
         right[: len(at)] -= at
         target: Array = np.asarray(np.linalg.solve(matrix, right), dtype=float)
-        if float(right @ target) < WORTH_A_STEP:
+        before = float(here @ here + at @ at)
+        worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
+        if float(right @ target) < worth:
             return False
-        share, before = 1.0, float(here @ here + at @ at)
+        share = 1.0
         for _ in range(SHORTEST):
             there = self.at.moved(target, share)
             (found,) = self._samples.residuals([there.point])

@@ -45,8 +45,9 @@ HOPELESS_MORE = 20.0
 ASKS = 4.0
 """One candidate more is looked for where screening promises this rise of the score."""
 
-FOLLOWED = 3
-"""Of what the ring promises, and of what is likely without it, so many are led to its phase."""
+FOLLOWED, FOLLOWED_OF_MANY = 3, 2
+"""Of what the ring promises, and of what is likely without it, so many are led to its phase; fewer
+of several recordings, which take their time and leave less open."""
 
 UNLIKELY = 6.0
 """What is this far behind nothing, without the ring, is not likely."""
@@ -158,6 +159,8 @@ def search(
         if tell is not None:
             tell("following the ring", done, total)
 
+    many = len({bundle.record for bundle in system.bundles}) > 1
+    most_followed = FOLLOWED_OF_MANY if many else FOLLOWED
     nothing = _nothing(system, calibrated)
     promises: list[Fitted] = []
     if nothing is not None and nothing.left < LOST:
@@ -169,7 +172,7 @@ def search(
                 system, lens, data, calibrated, terms, tuple(screened), null, tuple(faintly),
                 refiner, faint=True,
             )  # fmt: skip
-        promises = ring_promises(about, refiner)[:FOLLOWED]
+        promises = ring_promises(about, refiner)[:most_followed]
     promised = finder.screen(null)
     singles = [one for _, one in promised]
     finder.keep(null)
@@ -194,7 +197,8 @@ def search(
             break
     ranked = finder.ranked()
     least = null.log_score - UNLIKELY
-    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
+    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least]
+    likely = likely[:most_followed]
     if rings(system) and (nothing is not None or _near(ranked[0])):
         kin = {candidates[n].family for one in (*promises, *likely) for n in one.hypothesis.names}
         related = [
