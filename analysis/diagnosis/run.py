@@ -13,7 +13,7 @@ from analysis.diagnosis.prepare import prepare
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
 from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
-from analysis.engine.search import Tell
+from analysis.engine.finder import Tell
 from cdpr8.rigfile import Rig
 
 RESULT = "diagnose.json"

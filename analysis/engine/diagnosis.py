@@ -7,10 +7,11 @@ import numpy as np
 
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.confirm import Confirmation, confirm
+from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
-from analysis.engine.search import Search, Tell, look, search
+from analysis.engine.search import Search, look, search
 from analysis.engine.system import Array, System
 
 Stage = Literal["align", "locate", "name", "confirm"]

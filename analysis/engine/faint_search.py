@@ -9,7 +9,8 @@ from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
 from analysis.engine.faint import FORMS, Faint, faint
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Fitted, Refiner
-from analysis.engine.ring_fit import FAINT, LOST, Followed, Samples, follow_ring
+from analysis.engine.ring_fit import FAINT, LOST, Followed, follow_ring
+from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen, grouped, groups
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
@@ -114,7 +115,7 @@ def followed_search(
         ahead = min(led, key=_farthest).costs if led else ()
         found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
-            sharper = sharpened(state, lambda there: -samples.misfit(found.nuisance, there))
+            sharper = sharpened(state, lambda there: -_misfit(samples, found.nuisance, there))
             if sharper is not state:
                 found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
         led.append(found)
@@ -173,6 +174,12 @@ def _weighed(
         there = refiner.at(state, refiner.directions_of(one.nuisance))
         fitted.append(replace(there, log_score=score, point=one.point))
     return sorted(fitted, key=lambda one: -one.log_score)
+
+
+def _misfit(samples: Samples, nuisance: Array, state: State) -> float:
+    """Squared misfit of all samples at a state, ring and all."""
+    (found,) = samples.residuals([Followed(nuisance, state).point])
+    return float(found @ found)
 
 
 def _cost(led: Followed) -> float:

@@ -8,10 +8,11 @@ once more with them let out of it, and what is gained by leaving it is told apar
 from copy import copy
 from dataclasses import dataclass, replace
 
+from analysis.engine.finder import ASKS, SMALL, STARTS
 from analysis.engine.hypothesis import Part
 from analysis.engine.refine import Fitted
 from analysis.engine.screen import Scored
-from analysis.engine.search import ASKS, SMALL, STARTS, Search
+from analysis.engine.search import Search
 from analysis.engine.system import Candidate
 
 

@@ -1,0 +1,114 @@
+"""The samples by which a ring is followed, in units of their noise."""
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.sensitivity import BATCH
+from analysis.engine.system import Array, Bundle, Point, Prediction, System
+
+FASTEST_HZ = 80.0
+"""Faster samples are averaged in blocks down to about this."""
+
+Mask = list[NDArray[np.bool_]]
+
+
+class Samples:
+    """The samples by which a ring is followed.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    held
+        A recording that is kept back, but for its rest.
+    everything
+        Use what is kept back, too; what is sealed never is.
+    share
+        Those up to this share of the time.
+    """
+
+    def __init__(
+        self, system: System, *, held: str = "", everything: bool = False, share: float = 1.0
+    ) -> None:
+        self.system = system
+        self._mask = [
+            seen(one, held=held, everything=everything, share=share) for one in system.bundles
+        ]
+
+    def residuals(self, points: Sequence[Point]) -> list[Array]:
+        """Of each point, in units of noise, shape (n,)."""
+        found: list[Array] = []
+        for first in range(0, len(points), BATCH):
+            found += self.system.simulate(points[first : first + BATCH], self._residual)
+        return found
+
+    def _residual(self, prediction: Prediction) -> Array:
+        return residuals(self.system.bundles, prediction, self._mask)
+
+    @cached_property
+    def shares(self) -> Array:
+        """When each is, as a share of its recording's time, shape (n,)."""
+        bundles = self.system.bundles
+        parts = []
+        for bundle, chosen in zip(bundles, self._mask, strict=True):
+            count = int(chosen.sum())
+            block = _block(bundle)
+            ends = np.arange(1, count // block + 1) * block / max(count, 1)
+            parts.append(np.repeat(ends, len(bundle.names)))
+        return np.concatenate(parts)
+
+
+def seen(
+    bundle: Bundle, *, share: float = 1.0, held: str = "", everything: bool = False
+) -> NDArray[np.bool_]:
+    """Which samples count.
+
+    Parameters
+    ----------
+    bundle
+        Of which.
+    share
+        Those up to this share of the time.
+    held
+        A recording that is kept back, but for its rest.
+    everything
+        What is kept back, too; what is sealed never.
+    """
+    chosen = np.zeros(len(bundle.t_s), dtype=bool)
+    for one in bundle.segments:
+        kept_back = one.held_out or (bundle.record == held and one.name != "rest")
+        if not one.sealed and (everything or not kept_back):
+            chosen |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
+    places = np.flatnonzero(chosen)
+    chosen[places[int(np.ceil(share * len(places))) :]] = False
+    return chosen
+
+
+def residuals(bundles: Sequence[Bundle], prediction: Prediction, mask: Mask) -> Array:
+    """Residuals of the masked samples in units of their noise, one after the other.
+
+    Parameters
+    ----------
+    bundles, prediction
+        What was recorded, and what is simulated.
+    mask
+        For each bundle, which samples.
+    """
+    parts = []
+    for bundle, seen, chosen in zip(bundles, prediction, mask, strict=True):
+        whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
+        rest = (bundle.value[chosen] - seen[chosen]) @ whiten.T
+        block = _block(bundle)
+        whole = len(rest) // block * block
+        rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
+        parts.append(rest.reshape(-1))
+    return np.concatenate(parts)
+
+
+def _block(bundle: Bundle) -> int:
+    """How many samples are averaged."""
+    length_s = bundle.t_s[-1] - bundle.t_s[0]
+    return max(int(len(bundle.t_s) / (FASTEST_HZ * length_s)), 1)
