@@ -75,7 +75,12 @@ FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_pres
 DRAG = "drag on the platform"
 DRAGS = ("platform_damping", "air_drag")
 
-FAMILIES = dict.fromkeys(FRICTIONS, FRICTION) | dict.fromkeys(DRAGS, DRAG)
+LOSS = "loss in the cables"
+LOSSES = ("cable_viscous", "cable_structural", "cable_relaxation")
+
+FAMILIES = (
+    dict.fromkeys(FRICTIONS, FRICTION) | dict.fromkeys(DRAGS, DRAG) | dict.fromkeys(LOSSES, LOSS)
+)
 
 SHARPEST = 3.0
 """Presliding this many times shorter than it is screened at is Coulomb's law."""

@@ -199,8 +199,9 @@ class _Way:
     def _step(self, inside: NDArray[np.bool_]) -> bool:
         assert self._columns is not None
         at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
-        prior = np.concatenate([np.ones(len(at)), np.zeros(len(columns) - len(at))])
-        matrix = columns @ columns.T + np.diag(prior + 1e-9)
+        # What a short window does not tell of a law stays about where it is (Levenberg 1944).
+        held = (STEP / self._steps[len(at) :]) ** 2
+        matrix = columns @ columns.T + np.diag(np.concatenate([np.ones(len(at)), held]))
         right = columns @ here
         right[: len(at)] -= at
         target: Array = np.asarray(np.linalg.solve(matrix, right), dtype=float)

@@ -21,8 +21,12 @@ FOLLOWED, FOLLOWED_OF_MANY = 3, 2
 """Of what the ring promises, and of what is likely without it, so many are led to its phase; fewer
 of several recordings, which take their time and leave less open."""
 
-UNLIKELY = 6.0
-"""What is this far behind nothing, without the ring, is not likely."""
+WORTH_FOLLOWING = 8.0
+"""What is faint, and in straight lines this far before nothing, is led to the phase as well."""
+
+UNLIKELY, SEEN = 6.0, 8.0
+"""What is this far behind nothing, without the ring, is not likely; and what is so far before that,
+is seen without it."""
 
 PROMISING = 3.0
 """What is led to the ring's phase leaves, without the ring, no more than this of the squared misfit
@@ -131,7 +135,13 @@ def search(
         chosen = [one for one in system.candidates if not one.fixed]
         about = faint(system, nothing, chosen, following)
         if nothing.left < FAINT:
-            return found(*faint_search(about, refiner, refiner.candidates), faint=True)
+            screened, faintly = faint_search(about, refiner, refiner.candidates)
+            if not _promising(faintly):
+                return found(screened, faintly, faint=True)
+            single = [one for one in faintly if len(one.hypothesis.parts) == 1]
+            tried = _to_follow(system, refiner, null, single, single)
+            rung = followed_search(refiner, tried, nothing, most_causes, following)
+            return found(screened, rung or faintly, faint=True)
         promises = ring_promises(about, refiner)
     finder = Finder(refiner, terms, tell)
     singles = finder.find(null, most_causes)
@@ -152,13 +162,18 @@ def _to_follow(
     promises: Sequence[Fitted],
     ranked: Sequence[Fitted],
 ) -> list[Fitted]:
-    """Hypotheses worth leading to the ring's phase, one for each set of candidates."""
+    """Hypotheses worth leading to the ring's phase, one for each set of candidates.
+
+    What the ring promises, what is likely, and other laws of their families.
+    """
     many = len({bundle.record for bundle in system.bundles}) > 1
     most = FOLLOWED_OF_MANY if many else FOLLOWED
     least = null.log_score - UNLIKELY
     likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:most]
     family = {name: one.family for name, one in refiner.candidates.items()}
-    known = (*promises[:most], *likely)
+    # Which places are on, lines tell better, where they tell anything.
+    seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
+    known = (*(seen.get(one.hypothesis.names, one) for one in promises[:most]), *likely)
     kin = {family[name] for one in known for name in one.hypothesis.names} - {""}
     single = [one for one in ranked if len(one.hypothesis.parts) == 1]
     related = [one for one in single if family[one.hypothesis.names[0]] in kin]
@@ -180,6 +195,12 @@ def _nothing(system: System, calibrated: Calibrated) -> Followed | None:
     if misfit > PROMISING or not rings(system):
         return None
     return follow_ring(system, calibrated.at, everything=True)
+
+
+def _promising(faintly: Sequence[Fitted]) -> bool:
+    """Whether anything explains, in straight lines, much more than parameters do."""
+    nothing = next(one for one in faintly if not one.hypothesis.parts)
+    return faintly[0].log_score > nothing.log_score + WORTH_FOLLOWING
 
 
 def _near(fitted: Fitted) -> bool:
