@@ -25,7 +25,7 @@ STRETCHES = 100
 """How closely it is told up to where a ring could be followed."""
 
 THERE = 1.02
-"""A squared misfit of a sample below this, on average, needs no further step."""
+"""On the way, a squared misfit of a sample below this, on average, needs no further step."""
 
 WORTH_A_STEP = 2.0
 """Nor one that promises less than this of the squared misfit,"""
@@ -44,6 +44,9 @@ FAINT = 1.5
 
 LOST = 30.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
+
+GOES_ON = 6.0
+"""With a cause on, a ring is followed on while no more than this is left: laws are not exact."""
 
 BEHIND = 600.0
 """What stays this far behind another, in squared misfit, is not followed further."""
@@ -147,7 +150,7 @@ def follow_ring(
                 break
         costs.append(way.cost(share))
         behind = len(ahead) >= len(costs) and costs[-1] > ahead[len(costs) - 1] + BEHIND
-        if way.left(share) > FAINT or behind:
+        if way.left(share) > (FAINT if state is None else GOES_ON) or behind:
             break
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
     left, share = next((one for one in lefts if one[0] > FAINT), lefts[-1])
@@ -181,7 +184,8 @@ class _Way:
         here = self.here[inside]
         if not len(here):
             return False
-        if not THERE * len(here) < float(here @ here) < LOST * len(here):
+        near = share < 1.0 and float(here @ here) < THERE * len(here)
+        if near or not float(here @ here) < LOST * len(here):
             return False
         fresh = self._columns is None
         if self._columns is None:
