@@ -81,7 +81,7 @@ def _errors(
 
 def _used(search: Search, held: str) -> NDArray[np.bool_]:
     labels, bundles = search.lens.labels, search.system.bundles
-    whole = np.array([bundle.record == held for bundle in bundles])[labels.bundle]
+    whole = np.array([held != "" and bundle.record == held for bundle in bundles])[labels.bundle]
     resting = np.array(
         [
             bundles[b].segments[s].name == "rest"
@@ -112,7 +112,7 @@ def sample_errors(system: System, point: Point, held: str = "") -> dict[str, dic
         for segment in bundle.segments:
             inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
             away = segment.held_out or segment.sealed
-            away = away or (bundle.record == held and segment.name != "rest")
+            away = away or (held != "" and bundle.record == held and segment.name != "rest")
             if inside.any():
                 part = sums["held_out" if away else "used"]
                 part.setdefault(bundle.kind, []).append(residual[inside].reshape(-1) ** 2)

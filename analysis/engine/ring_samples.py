@@ -79,7 +79,7 @@ def seen(
     """
     chosen = np.zeros(len(bundle.t_s), dtype=bool)
     for one in bundle.segments:
-        kept_back = one.held_out or (bundle.record == held and one.name != "rest")
+        kept_back = one.held_out or (held != "" and bundle.record == held and one.name != "rest")
         if not one.sealed and (everything or not kept_back):
             chosen |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
     places = np.flatnonzero(chosen)

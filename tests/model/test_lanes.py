@@ -121,3 +121,20 @@ def test_the_winch_pays_out_what_the_course_asks(rig: Rig) -> None:
     assert np.abs(wound.tension_variation_n).max() < 0.2 * np.abs(pulled.tension_variation_n).max()
     assert np.abs(wound.pose[wound.t_s < 0.3]).max() < 1e-12
     assert wound.provenance["drive"] == "winch"
+
+
+def test_few_tasks_run_one_by_one_with_the_same_result(rig: Rig) -> None:
+    tasks = [Task(with_mass(rig, 1.0 + 0.01 * n), SHORT) for n in range(3)]
+    side_by_side = simulate_many(tasks)
+    for one, other in zip(simulate_many(tasks, fewest=4), side_by_side, strict=True):
+        assert one.tension_n == pytest.approx(other.tension_n, abs=1e-9)
+        assert one.stats.derivatives == other.stats.derivatives
+
+
+def test_lanes_with_two_drives_among_them_each_follow_their_own(rig: Rig) -> None:
+    late = ActiveEffect("drive_phase", {"late_s": 0.01})
+    other = ActiveEffect("drive_amplitude", {"amplitude_share": 0.02})
+    tasks = [Task(rig, SHORT, effects=[one] if one else []) for one in (None, other, None, other)]
+    tasks += [Task(rig, SHORT, effects=[late])]
+    for task, lane in zip(tasks, simulate_many(tasks), strict=True):
+        assert lane.pose == pytest.approx(run(task).pose, abs=1e-10)

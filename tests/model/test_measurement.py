@@ -7,6 +7,7 @@ import pytest
 
 from model.effects import library
 from model.motion import RampedSine
+from model.observation import _read
 
 TIME_S = np.arange(4001) / 1000.0
 CIRCULAR = 2.0 * np.pi * 2.0
@@ -88,3 +89,22 @@ def test_a_harmonic_is_heard_however_often_the_drive_was_altered_before() -> Non
     twice = Altered(Altered(sine, factor=1.1), pace=1.01)
     added = Distorted(twice, 0.1, 2, 0.0).at(time_s)[0] - twice.at(time_s)[0]
     assert np.abs(added).max() == pytest.approx(0.1 * 1.1 * 0.03, rel=0.01)
+
+
+def test_a_tone_is_read_between_rows_twenty_times_closer_than_a_straight_line() -> None:
+    time_s, tone = np.arange(501) / 500.0, 2.0 * np.pi * 27.0
+    tension = 20.0 + np.sin(tone * time_s)[:, None] + np.arange(8.0)
+    read_s = np.linspace(0.1, 0.9, 777)
+    true = 20.0 + np.sin(tone * read_s)[:, None] + np.arange(8.0)
+    straight = np.interp(read_s, time_s, tension[:, 0]) - true[:, 0]
+    seen = _read(time_s, tension, read_s) - true
+    assert np.abs(seen).max() < np.abs(straight).max() / 20.0
+
+
+def test_a_jump_between_rows_reaches_no_further_than_the_next_row() -> None:
+    time_s = np.arange(40) / 10.0
+    tension = np.repeat((time_s >= 2.0).astype(float)[:, None], 8, axis=1)
+    read_s = np.linspace(0.0, 3.9, 1000)
+    seen = _read(time_s, tension, read_s)[:, 0]
+    away = (read_s < 1.8) | (read_s > 2.1)
+    assert np.array_equal(seen[away], (read_s[away] >= 2.0).astype(float))

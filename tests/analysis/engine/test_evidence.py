@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
-from analysis.engine.evidence import Frame, Problem, bounded, directions
+from analysis.engine.evidence import Frame, Problem, bounded, directions, weigh
 from analysis.engine.lens import Lens
 from analysis.engine.system import Bundle, Segment
 from analysis.engine.variance import form_variance
@@ -85,3 +85,21 @@ def test_a_law_is_less_certain_at_high_harmonics_and_never_more_wrong_than_by_al
     ]
     assert np.all(np.diff(by_line[:5]) > 0)
     assert by_line[-1] < 2.5 * np.sqrt(2)
+
+
+def test_an_exact_law_stands_before_parameters_that_imitate_it_far_out(problem: Problem) -> None:
+    generator = np.random.default_rng(8)
+    size = len(problem.residual)
+    law = 300.0 * generator.standard_normal(size)
+    # One parameter imitates all but a hundredth of the law, at 10 sigmas.
+    imitation = 0.1 * (law + 0.01 * 300.0 * generator.standard_normal(size))[:, None]
+    noise = generator.standard_normal(size)
+    before = Problem(
+        law + noise, imitation, np.zeros(1), np.ones(size), problem.labels, problem.used
+    )
+    nothing = weigh(before, {}, {}, {})
+    after = Problem(noise, imitation, np.zeros(1), np.ones(size), problem.labels, problem.used)
+    named = weigh(
+        after, {"law": law[:, None]}, {"law": law}, {"law": 0.05}, rounds=1, standing=True
+    )
+    assert named.log_evidence > nothing.log_evidence + 10.0

@@ -1,0 +1,137 @@
+"""The ring on an oscillator that is let go: its phase, what leads there, and what cannot."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.engine.faint import faint
+from analysis.engine.faint_search import ring_promises
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.lens import Lens
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.search import look
+from analysis.engine.sharpen import sharpened
+from analysis.engine.state import Number, State
+from analysis.engine.system import (
+    Array,
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Segment,
+    Shape,
+    Term,
+)
+
+TONE_HZ, SIGMA = 5.0, 0.01
+"""The tone, and how well it is known: over 20 s its phase is not known at all."""
+
+T_S = np.arange(0.0, 20.0, 0.02)
+
+
+def ring(tone_share: float, damping_1_per_s: float, step: float, moment_s: float) -> Array:
+    """Let go at 1 s, shape (n, 1); from a moment on the channel is off by a step."""
+    since = np.maximum(T_S - 1.0, 0.0)
+    phase = 2.0 * np.pi * TONE_HZ * (1.0 + tone_share) * since
+    value = np.exp(-damping_1_per_s * since) * np.sin(phase)
+    return np.asarray(value + step * (moment_s <= T_S))[:, None]
+
+
+DAMPING = Candidate(
+    "damping", "damping", "plant", (Term("rate", "rate", "1/s", "", 0.0, 2.0, 0.1),)
+)
+STEP = Candidate(
+    "step", "a step of the channel", "cell", (Term("high", "high", "V", "", -5.0, 5.0, 0.5),),
+    (Shape("moment", "s", 2.0, 0.0, 20.0, tuple(np.arange(2.0, 19.0, 2.0)), logarithmic=False,
+           whole=True, finest=0.05),),
+)  # fmt: skip
+
+
+class LetGo:
+    """An oscillator of which the tone is known to a share."""
+
+    name = "let go"
+    nuisances: Sequence[Nuisance] = (Nuisance("tone", SIGMA, "1"),)
+    candidates: Sequence[Candidate] = (DAMPING, STEP)
+
+    def __init__(self, value: Array, noise: float = 0.02) -> None:
+        noisy = value + noise * np.random.default_rng(1).standard_normal(value.shape)
+        self.bundles = (
+            Bundle(
+                ("y",), ("V",), T_S, noisy, np.eye(1) * noise**2,
+                (Segment(0.0, 1.0, None, 20.0, name="rest"), Segment(1.0, 20.0, None, 20.0)),
+                tones_hz=(TONE_HZ,),
+            ),
+        )  # fmt: skip
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [reduce([self._one(point)]) for point in points]
+
+    def _one(self, point: Point) -> Array:
+        damping, step = point.effects.get("damping"), point.effects.get("step")
+        return ring(
+            SIGMA * float(point.nuisance[0]),
+            damping.values["rate"] if damping else 0.0,
+            step.values["high"] if step else 0.0,
+            step.shapes["moment"] if step else 0.0,
+        )
+
+
+def state_of(candidate: Candidate, value: float, **shapes: float) -> State:
+    (term,) = candidate.terms
+    hypothesis = Hypothesis({candidate.name: Part((term.name,), shapes=shapes)})
+    number = Number(candidate.name, (term.name,), None, term.low, term.high, 0.02 * term.step)
+    return State(hypothesis, {candidate.name: candidate}, (number,), np.array([value]))
+
+
+def test_a_tone_two_sigmas_off_is_led_to_the_recordings_phase() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0))
+    found = follow_ring(system, np.zeros(1))
+    assert found.share == 1.0
+    assert found.left == pytest.approx(1.0, abs=0.1)
+    assert found.nuisance[0] == pytest.approx(2.0, abs=0.01)
+
+
+def test_a_ring_that_dies_away_is_followed_no_further_than_parameters_lead() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
+    alone = follow_ring(system, np.zeros(1))
+    assert alone.share < 0.5
+    assert alone.left > FAINT
+    led = follow_ring(system, np.zeros(1), state_of(DAMPING, 0.02))
+    assert led.share == 1.0
+    assert led.left == pytest.approx(1.0, abs=0.1)
+    assert led.state is not None
+    assert led.state.values[0] == pytest.approx(0.2, abs=0.005)
+
+
+def test_what_cannot_be_followed_further_names_its_cause() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
+    found = look(system)
+    refiner = Refiner(system, found.lens, found.data, found.calibrated)
+    alone = follow_ring(system, np.zeros(1), everything=True)
+    promises = ring_promises(faint(system, alone, system.candidates), refiner)
+    assert promises[0].hypothesis.names == ("damping",)
+
+
+def test_what_falls_behind_another_is_not_followed_to_the_end() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
+    best = follow_ring(system, np.zeros(1), state_of(DAMPING, 0.02))
+    wrong = follow_ring(system, np.zeros(1), state_of(STEP, 0.1, moment=4.0), ahead=best.costs)
+    assert len(wrong.costs) < len(best.costs)
+
+
+def test_the_moment_of_an_event_is_found_between_those_that_are_tried() -> None:
+    system = LetGo(ring(0.0, 0.0, 1.0, 7.3))
+    lens = Lens(list(system.bundles))
+
+    def score(state: State) -> float:
+        (seen,) = system.simulate([state.point(np.zeros(1))], lens)
+        return -float(np.sum((lens.of_data() - seen) ** 2))
+
+    found = sharpened(state_of(STEP, 1.0, moment=2.0), score)
+    assert found.hypothesis.parts["step"].shapes["moment"] == pytest.approx(7.3, abs=0.05)
