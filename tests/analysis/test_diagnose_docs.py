@@ -14,8 +14,8 @@ def test_its_numbers_are_those_of_the_code() -> None:
     assert f"{100 * NUMBER:g} % for a gain" in TEXT
     assert f"{100 * LINEAR:g} % for linear damping" in TEXT
     assert f"{100 * LAW:g} % for friction" in TEXT
-    assert "averaged over three sizes" in TEXT
-    assert len(evidence.FORM_SIZES) == 3
+    assert "averaged over five sizes" in TEXT
+    assert len(evidence.FORM_SIZES) == 5
     assert f"one in {round(exp(-hypothesis.LOG_ODDS), -1):.0f} for any effect" in TEXT
     assert "Scores are halved" in TEXT
     assert judge.TEMPER == 2.0
