@@ -136,10 +136,9 @@ def followed_search(
         if min(led, key=_farthest, default=nothing) is best:
             break
     nulls = [nothing]
-    if nothing.misfit < LOST * count:
-        for way in sorted(led, key=_farthest)[:RESTARTS]:
-            start = _parameters_of(system, way)
-            nulls.append(follow_ring(system, start, everything=True, near=True))
+    for way in sorted(led, key=_farthest)[:RESTARTS]:
+        start = _parameters_of(system, way)
+        nulls.append(follow_ring(system, start, everything=True, near=True))
     if min(one.misfit for one in (*led, *nulls)) > FAINT * count:
         return None
     return _weighed(refiner, led, min(nulls, key=_cost), count)

@@ -137,7 +137,7 @@ class Refiner:
         """
         nuisance = np.clip(start.weighed.nuisance, -FAR_SIGMAS, FAR_SIGMAS)
         state, used = State.of(start, self.candidates), self._problem.used
-        state = sharpened(state, lambda there: self._score_at(there, nuisance))
+        state = sharpened(state, lambda there: self._score_at(there, nuisance), everywhere=False)
         return self._improve(state, nuisance, used, rounds, at_least)
 
     def fit_from(self, starts: Sequence[Scored], most: int) -> Fitted:

@@ -18,8 +18,9 @@ from analysis.engine.system import Array, Point, System
 WINDOWS = (0.08, 0.1, 0.12, 0.15, 0.2, 0.27, 0.36, 0.48, 0.64, 0.8, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
 
-STEPS = 5
-"""So many steps are taken in each window, at most."""
+STEPS, LAST_STEPS = 5, 25
+"""So many steps are taken in each window, at most; in the last, over the whole of the time, until
+none promises anything: what is left there is compared to a few units in tens of thousands."""
 
 STRETCHES = 100
 """How closely it is told up to where a ring could be followed."""
@@ -145,7 +146,7 @@ def follow_ring(
     way = _Way(samples, Followed(nuisance, state))
     costs: list[float] = []
     for share in WINDOWS[-1:] if near else WINDOWS:
-        for _ in range(STEPS):
+        for _ in range(STEPS if share < 1.0 else LAST_STEPS):
             if not way.step(share):
                 break
         costs.append(way.cost(share))

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from analysis.engine.state import State
 
 
-def sharpened(state: State, score: Callable[[State], float]) -> State:
+def sharpened(state: State, score: Callable[[State], float], *, everywhere: bool = True) -> State:
     """The best of the values that each such shape is tried at, and of ever closer ones about it.
 
     Parameters
@@ -14,6 +14,8 @@ def sharpened(state: State, score: Callable[[State], float]) -> State:
         From where.
     score
         How well a state explains.
+    everywhere
+        Try them all; otherwise those about where it stands.
     """
     for name, part in state.hypothesis.parts.items():
         for shape in state.candidates[name].shapes:
@@ -21,7 +23,8 @@ def sharpened(state: State, score: Callable[[State], float]) -> State:
                 continue
             distance = abs(shape.grid[1] - shape.grid[0])
             at = part.shapes.get(shape.name, shape.default)
-            best, values = score(state), shape.grid
+            best = score(state)
+            values = shape.grid if everywhere else (at - distance, at + distance)
             while distance >= shape.finest:
                 for tried in values:
                     there = state.shaped(name, shape.name, tried)

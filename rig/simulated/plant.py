@@ -23,7 +23,7 @@ from model.motion import RampedSine
 
 Array = NDArray[np.float64]
 
-PULLEY_FRICTION_N = (0.207, 0.207, 0.563, 0.563, 0.563, 0.192, 0.192, 0.563)
+PULLEY_FRICTION_N = (0.216, 0.216, 0.556, 0.556, 0.556, 0.200, 0.200, 0.556)
 """Coulomb friction of the simulated pulleys, cable by cable: see sample_data/make_run01.py."""
 
 BRISTLE_LENGTH_M = 5e-5
