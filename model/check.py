@@ -1,6 +1,7 @@
 """Can the numbers be believed: the run with half the step, and the energy of free vibration."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,8 +82,8 @@ def step_halving(rig: Rig, simulation: Simulation, excitation: Excitation, **how
         The largest change of pose, tensions and cable amplitudes, each as a fraction of its own
         largest value. Infinite where one run blew up earlier than the other.
     """
-    arguments: dict[str, object] = {**how, "step_s": 0.5 * simulation.stats.longest_step_s}
-    finer = simulate(rig, excitation, **arguments)  # type: ignore[arg-type]
+    arguments: dict[str, Any] = {**how, "step_s": 0.5 * simulation.stats.longest_step_s}
+    finer = simulate(rig, excitation, **arguments)
     changes = [
         _change(simulation.pose[:, :3], finer.pose[:, :3]),
         _change(simulation.pose[:, 3:], finer.pose[:, 3:]),

@@ -10,6 +10,7 @@ column, as is what else pulls there; creep of pretensions in (c); a late camera 
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -212,9 +213,9 @@ def _rows(
     command = RampedSine.from_excitation(recording.excitation)
     nominal = Machine.from_rig(recording.rig)
     asked = command.at(t_s - recording.shift_s - known.drive_late_s)
-    if recording.excitation.drive == "winch":
-        asked = tuple(np.zeros_like(one) for one in asked)  # type: ignore[assignment]
-    drive = (1.0 + known.drive_share) * required_drive(nominal, *asked)
+    pushed = 0.0 if recording.excitation.drive == "winch" else 1.0
+    drive = required_drive(nominal, *(pushed * one for one in asked))
+    drive = (1.0 + known.drive_share) * drive
     left = _wrench(machine, pose, rate, acceleration, pulled, drive)
     return np.vstack([beyond, left, inner.T @ beyond])
 
@@ -290,8 +291,8 @@ def _moved(recording: Recording, known: _Known) -> Sequence[_Known]:
     unit = np.eye(8)
     found: list[_Known] = []
 
-    def change(**changes: object) -> None:
-        found.append(replace(known, machine=replace(machine, **changes)))  # type: ignore[arg-type]
+    def change(**changes: Any) -> None:
+        found.append(replace(known, machine=replace(machine, **changes)))
 
     shares = inertia_shares(rig)
     for axis in range(3):

@@ -12,8 +12,6 @@ from analysis.engine.system import Array, Bundle, Point, Prediction, System
 FASTEST_HZ = 80.0
 """Faster samples are averaged in blocks down to about this."""
 
-Mask = list[NDArray[np.bool_]]
-
 
 class Samples:
     """The samples by which a ring is followed.
@@ -37,6 +35,7 @@ class Samples:
         self._mask = [
             seen(one, held=held, everything=everything, share=share) for one in system.bundles
         ]
+        self._whiten = [np.linalg.inv(np.linalg.cholesky(one.covariance)) for one in system.bundles]
 
     def residuals(self, points: Sequence[Point]) -> list[Array]:
         """Of each point, in units of noise, shape (n,)."""
@@ -46,7 +45,17 @@ class Samples:
         return found
 
     def _residual(self, prediction: Prediction) -> Array:
-        return residuals(self.system.bundles, prediction, self._mask)
+        """Residuals of the samples that count, in blocks, one bundle after the other."""
+        parts = []
+        for bundle, chosen, whiten, found in zip(
+            self.system.bundles, self._mask, self._whiten, prediction, strict=True
+        ):
+            rest = (bundle.value[chosen] - found[chosen]) @ whiten.T
+            block = _block(bundle)
+            whole = len(rest) // block * block
+            rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
+            parts.append(rest.reshape(-1))
+        return np.concatenate(parts)
 
     @cached_property
     def shares(self) -> Array:
@@ -85,27 +94,6 @@ def seen(
     places = np.flatnonzero(chosen)
     chosen[places[int(np.ceil(share * len(places))) :]] = False
     return chosen
-
-
-def residuals(bundles: Sequence[Bundle], prediction: Prediction, mask: Mask) -> Array:
-    """Residuals of the masked samples in units of their noise, one after the other.
-
-    Parameters
-    ----------
-    bundles, prediction
-        What was recorded, and what is simulated.
-    mask
-        For each bundle, which samples.
-    """
-    parts = []
-    for bundle, seen, chosen in zip(bundles, prediction, mask, strict=True):
-        whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
-        rest = (bundle.value[chosen] - seen[chosen]) @ whiten.T
-        block = _block(bundle)
-        whole = len(rest) // block * block
-        rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
-        parts.append(rest.reshape(-1))
-    return np.concatenate(parts)
 
 
 def _block(bundle: Bundle) -> int:

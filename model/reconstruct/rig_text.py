@@ -4,6 +4,7 @@ All that is not mechanical (amplifiers, camera, plate, excitation) stays as it w
 """
 
 import re
+from collections.abc import Iterable
 
 from cdpr8.errors import RigFileError
 from model.reconstruct.layout import Layout
@@ -63,8 +64,8 @@ def rig_text(layout: Layout, pattern: str, *, name: str, origin: str) -> str:
     return HEAD.format(name=name, origin=origin) + "\n" + "\n".join(body) + "\n"
 
 
-def _point(point: object) -> str:
-    values: list[float] = [float(value) for value in point]  # type: ignore[attr-defined]
+def _point(point: Iterable[float]) -> str:
+    values = [float(value) for value in point]
     return "[" + ", ".join(f"{value:.{DIGITS}g}" for value in values) + "]"
 
 
