@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from analysis.engine.diagnosis import Diagnosis
+from analysis.engine.fitted import Fitted
 from analysis.engine.judge import IMPLAUSIBLE, TEMPER
-from analysis.engine.refine import Fitted
 
 SHOWN = 12
 """Hypotheses kept."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.refine import Fitted
+from analysis.engine.fitted import Fitted
 from analysis.engine.ring_fit import Followed, follow_ring
 from analysis.engine.search import Search
 from analysis.engine.state import State

@@ -7,8 +7,9 @@ import numpy as np
 
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
 from analysis.engine.faint import FORMS, Faint, faint
+from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.refine import Fitted, Refiner
+from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, LOST, Followed, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen, grouped, groups

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analysis.engine.refine import Fitted, Refiner
+from analysis.engine.fitted import Fitted
+from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
 

@@ -9,8 +9,8 @@ from copy import copy
 from dataclasses import dataclass, replace
 
 from analysis.engine.finder import ASKS, SMALL, STARTS
+from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Part
-from analysis.engine.refine import Fitted
 from analysis.engine.screen import Scored
 from analysis.engine.search import Search
 from analysis.engine.system import Candidate

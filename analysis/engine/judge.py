@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import LOG_ODDS
-from analysis.engine.refine import Fitted
 from analysis.engine.system import Array, Candidate
 
 TEMPER = 2.0

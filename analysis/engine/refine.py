@@ -1,20 +1,20 @@
 """A hypothesis fitted in earnest: simulated again with everything free, until it stays."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.calibrate import Calibrated
-from analysis.engine.evidence import Frame, Problem, Weighed, weigh
-from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.evidence import Frame, Problem, weigh
+from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import nuisance_columns, simulate_features
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point, System
+from analysis.engine.system import Array, System
 
 ROUNDS = 5
 """Of simulating and solving."""
@@ -36,51 +36,6 @@ SHORTEST = 2
 
 ROUNDS_ANEW, SHORTEST_ANEW = 20, 5
 """The same where everything is simulated anew: the way is longer."""
-
-
-@dataclass(frozen=True)
-class Fitted:
-    """A hypothesis at its best.
-
-    Attributes
-    ----------
-    hypothesis
-        With the fitted shapes.
-    point
-        What was simulated: the best.
-    features
-        Simulated there, shape (f,).
-    problem
-        What is left there.
-    log_score
-        Evidence times prior odds, as a logarithm.
-    weighed
-        The evidence in detail; its factors are what could still be added.
-    values, sigmas
-        (candidate, term) -> magnitude and its standard deviation.
-    shape_sigmas
-        (candidate, shape) -> standard deviation, of the logarithm where it counts so.
-    done, columns
-        Candidate -> what it does to the features there, shape (f,), and its columns, (f, k).
-    at_limit
-        (candidate, number) that ended at the edge of its plausible range.
-    state
-        The free numbers.
-    """
-
-    hypothesis: Hypothesis
-    point: Point
-    features: Array
-    problem: Problem
-    log_score: float
-    weighed: Weighed
-    values: Mapping[tuple[str, str], float]
-    sigmas: Mapping[tuple[str, str], float]
-    shape_sigmas: Mapping[tuple[str, str], float]
-    done: Mapping[str, Array]
-    columns: Mapping[str, Array]
-    at_limit: tuple[tuple[str, str], ...]
-    state: State
 
 
 class Refiner:

@@ -10,8 +10,9 @@ from analysis.engine.calibrate import Calibrated, calibrate
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, followed_search, ring_promises
 from analysis.engine.finder import Finder, Tell
+from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
-from analysis.engine.refine import Fitted, Refiner
+from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, LOST, Followed, follow_ring
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns

@@ -17,10 +17,11 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.telling import Rival, Telling, information_bits
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.diagnosis import Diagnosis
+from analysis.engine.fitted import Fitted
 from analysis.engine.judge import Cause, Judgement
 from analysis.engine.judge import Rival as Other
 from analysis.engine.lens import Lens
-from analysis.engine.refine import Fitted, Refiner
+from analysis.engine.refine import Refiner
 from analysis.engine.screen import Screen
 from analysis.engine.search import Search, look
 from cdpr8.rigfile import Excitation, load_rig

@@ -6,7 +6,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from analysis.engine import Diagnosis, Point, Setting, diagnose
-from analysis.engine.refine import Fitted
+from analysis.engine.fitted import Fitted
 from tests.validation.emps import EDGE_S, MASS_KG, VISCOUS_N_S_M, Emps
 from tests.validation.shared import Described, named, order_of_evidence
 from tests.validation.silverbox import RATE_HZ, Hold, Silverbox

@@ -1,0 +1,54 @@
+"""A fitted hypothesis: where it stands, what it leaves, and how sure its numbers are."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from analysis.engine.evidence import Problem, Weighed
+from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.state import State
+from analysis.engine.system import Array, Point
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A hypothesis at its best.
+
+    Attributes
+    ----------
+    hypothesis
+        With the fitted shapes.
+    point
+        What was simulated: the best.
+    features
+        Simulated there, shape (f,).
+    problem
+        What is left there.
+    log_score
+        Evidence times prior odds, as a logarithm.
+    weighed
+        The evidence in detail; its factors are what could still be added.
+    values, sigmas
+        (candidate, term) -> magnitude and its standard deviation.
+    shape_sigmas
+        (candidate, shape) -> standard deviation, of the logarithm where it counts so.
+    done, columns
+        Candidate -> what it does to the features there, shape (f,), and its columns, (f, k).
+    at_limit
+        (candidate, number) that ended at the edge of its plausible range.
+    state
+        The free numbers.
+    """
+
+    hypothesis: Hypothesis
+    point: Point
+    features: Array
+    problem: Problem
+    log_score: float
+    weighed: Weighed
+    values: Mapping[tuple[str, str], float]
+    sigmas: Mapping[tuple[str, str], float]
+    shape_sigmas: Mapping[tuple[str, str], float]
+    done: Mapping[str, Array]
+    columns: Mapping[str, Array]
+    at_limit: tuple[tuple[str, str], ...]
+    state: State
