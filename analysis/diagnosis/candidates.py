@@ -49,11 +49,12 @@ POLICIES: dict[str, Policy] = {
     "platform_damping": Policy(form_share=LINEAR),
     "cable_modes": Policy(form_share=0.4),
     "cable_end_forcing": Policy(form_share=0.2),
-    "frame_compliance": Policy(shapes={"frame_hz": (25.0,)}),
+    "frame_compliance": Policy(shapes={"frame_hz": (25.0,), "frame_loss": (0.03,)}),
     "pulley_presliding": Policy(shapes={"presliding_m": (3e-4,)}),
     "pulley_stribeck": Policy(shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,)}),
+    "umbilical": Policy(shapes={"loss_s": (5e-3,)}),
     "pulley_inertia": Policy(form_share=LINEAR),
-    "pulley_geometry": Policy(form_share=LINEAR),
+    "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
     "centre_of_mass": Policy(steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}),
     "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),
     "camera_axis": Policy(steps={"axis_roll_deg": 0.5, "axis_pitch_deg": 0.5, "axis_yaw_deg": 0.5}),
@@ -81,6 +82,9 @@ LOSSES = ("cable_viscous", "cable_structural", "cable_relaxation")
 FAMILIES = (
     dict.fromkeys(FRICTIONS, FRICTION) | dict.fromkeys(DRAGS, DRAG) | dict.fromkeys(LOSSES, LOSS)
 )
+
+WHOLE = ("left_at_rest",)
+"""Shapes that are one thing or another."""
 
 SHARPEST = 3.0
 """Presliding this many times shorter than it is screened at is Coulomb's law."""
@@ -131,7 +135,7 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
             terms.append(_term(one, step, ""))
     shapes = tuple(
         Shape(one.name, one.unit, one.default, _lowest(one, policy), one.high,
-              policy.shapes[one.name], logarithmic=one.low > 0.0)
+              policy.shapes[one.name], logarithmic=one.low > 0.0, whole=one.name in WHOLE)
         for one in effect.parameters
         if one.name in policy.shapes
     )  # fmt: skip

@@ -15,6 +15,7 @@ from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Predictio
 from cdpr8.rigfile import Rig
 from model import ActiveEffect, Machine, Simulation, Task, observe, simulate_many
 from model.library.discovery import library
+from model.motion import RampedSine
 from model.rest import tones_hz
 from model.simulator import run as simulate_task
 
@@ -25,6 +26,9 @@ OUTPUT_HZ = 333.0
 
 LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
+
+LATE_S = 0.3
+"""Cameras and cells may be late by so much: a simulation goes on for longer than what is seen."""
 
 GROUP = 16
 
@@ -154,13 +158,16 @@ class RecordedMachine:
                 active.append(effect)
         inside = tuple(one for one in active if one.effect.acts.side not in _OUTSIDE)
         outside = tuple(one for one in active if one.effect.acts.side in _OUTSIDE)
+        motion = _cut(recording, point.upto)
         task = Task(
             rig=recording.rig,
             excitation=recording.excitation,
+            motion=motion,
             effects=inside,
             nominal=recording.rig,
         )
-        key = tuple((one.name, *sorted(one.values.items())) for one in inside)
+        key = (motion and motion.duration_s, *((one.name, *sorted(one.values.items()))
+                                               for one in inside))  # fmt: skip
         return _Job(key, task, outside, start_s, pose_zero, late_s)
 
     def _moved(
@@ -232,6 +239,18 @@ class RecordedMachine:
 
 
 _OUTSIDE = ("cell", "camera", "clock")
+
+
+def _cut(recording: Recording, upto: float) -> RampedSine | None:
+    """The motion with as much of the time after its start as samples are asked for; None: all."""
+    if upto >= 1.0:
+        return None
+    first_s = min(float(one.t_s[0]) for one in recording.bundles)
+    last_s = max(float(one.t_s[0] + upto * (one.t_s[-1] - one.t_s[0])) for one in recording.bundles)
+    whole = RampedSine.from_excitation(recording.excitation)
+    # Whole tenths: recordings that are cut alike share their times.
+    until_s = np.ceil(10.0 * (max(last_s, first_s) - recording.shift_s + LATE_S)) / 10.0
+    return replace(whole, duration_s=float(until_s)) if until_s < whole.duration_s else None
 
 
 def seen_by(recording: Recording, simulation: Simulation, job: _Job) -> Prediction:

@@ -134,6 +134,5 @@ def inertia_shares(rig: Rig) -> tuple[float, float, float]:
     row = rig.platform.inertia_kg_m2
     value = np.asarray(row.value, dtype=float)
     principal = np.diag(value) if value.ndim == 2 else value
-    # A sigma that is a share of the largest is that share of each.
-    share = row.sigma / float(principal.max())
-    return (share, share, share)
+    roll, pitch, yaw = (row.sigma / float(one) for one in principal)
+    return (roll, pitch, yaw)

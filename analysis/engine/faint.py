@@ -81,7 +81,7 @@ def faint(
     progress
         Told of it.
     """
-    samples = Samples(system, everything=True, share=followed.share)
+    samples = Samples(system, everything=True, share=followed.telling)
     (here,) = samples.residuals([followed.point])
     points, steps = followed.neighbours()
     numbers, count = len(steps), len(followed.nuisance)

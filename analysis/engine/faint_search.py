@@ -10,7 +10,7 @@ from analysis.engine.faint import FORMS, Faint, faint
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT, LOST, Followed, follow_ring
+from analysis.engine.ring_fit import BEHIND, FAINT, LOST, Followed, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen, grouped, groups
 from analysis.engine.sensitivity import Progress
@@ -83,6 +83,7 @@ def faint_search(
 def followed_search(
     refiner: Refiner,
     hypotheses: Sequence[Fitted],
+    others: Sequence[Fitted],
     nothing: Followed,
     most_causes: int,
     progress: Progress | None = None,
@@ -95,6 +96,8 @@ def followed_search(
         Made the hypotheses.
     hypotheses
         Those to try, the null not among them.
+    others
+        Single causes, the best first: laws of the same things as what comes far are tried as well.
     nothing
         How far parameters alone lead.
     most_causes
@@ -125,6 +128,8 @@ def followed_search(
 
     for one in hypotheses:
         lead(one.point.nuisance, one.state)
+    for one in _kin(refiner, led, others):
+        lead(one.point.nuisance, one.state)
     for _ in range(most_causes - 1):
         best = min(led, key=_farthest, default=nothing)
         if best.left > LOST or len(_names(best)) >= most_causes:
@@ -137,7 +142,7 @@ def followed_search(
         if min(led, key=_farthest, default=nothing) is best:
             break
     nulls = [nothing]
-    for way in sorted(led, key=_farthest)[:RESTARTS]:
+    for way in sorted(led, key=_farthest)[: RESTARTS if nothing.left < LOST else 0]:
         start = _parameters_of(system, way)
         nulls.append(follow_ring(system, start, everything=True, near=True))
     if min(one.misfit for one in (*led, *nulls)) > FAINT * count:
@@ -168,9 +173,12 @@ def _weighed(
         logs = []
         for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
             noise = 1.0 + min((size * form) ** 2 * explained, hidden) / FORMS
-            unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (_cost(best) - count) / noise
-            logs.append(np.log(weight) - unlikely - 0.5 * (_cost(one) - _cost(best)) / noise)
-        score = float(np.logaddexp.reduce(logs)) + state.hypothesis.log_prior(refiner.candidates)
+            unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
+            logs.append(np.log(weight) - unlikely - 0.5 * (one.misfit - best.misfit) / noise)
+        # No error of form makes parameters likelier that are far from what is known of them.
+        strain = 0.5 * float(one.nuisance @ one.nuisance)
+        prior = state.hypothesis.log_prior(refiner.candidates)
+        score = float(np.logaddexp.reduce(logs)) - strain + prior
         there = refiner.at(state, refiner.directions_of(one.nuisance))
         fitted.append(replace(there, log_score=score, point=one.point))
     return sorted(fitted, key=lambda one: -one.log_score)
@@ -190,6 +198,27 @@ def _cost(led: Followed) -> float:
 def _farthest(led: Followed) -> tuple[float, float]:
     """Least for what was followed farthest, and there is closest."""
     return -led.share, _cost(led) if led.share == 1.0 else led.left
+
+
+def _kin(refiner: Refiner, led: Sequence[Followed], others: Sequence[Fitted]) -> list[Fitted]:
+    """Other laws of the things that came as far as the best."""
+    if not led:
+        return []
+    family = {name: one.family for name, one in refiner.candidates.items()}
+    best = min(led, key=_farthest)
+    far = [
+        one
+        for one in led
+        if one.share == best.share and (one.share < 1.0 or _cost(one) < _cost(best) + BEHIND)
+    ]
+    known = {_names(one) for one in led}
+    kin = {family[name] for one in far for name in _names(one)} - {""}
+    found: dict[tuple[str, ...], Fitted] = {}
+    for one in others:
+        names = one.hypothesis.names
+        if names not in known and family[names[0]] in kin:
+            found.setdefault(names, one)
+    return list(found.values())
 
 
 def _names(led: Followed) -> tuple[str, ...]:

@@ -15,14 +15,25 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, Point, System
 
-WINDOWS = (0.08, 0.1, 0.12, 0.15, 0.2, 0.27, 0.36, 0.48, 0.64, 0.8, 1.0)
+WINDOWS = (0.08, 0.1, 0.12, 0.15, 0.2, 0.27, 0.36, 0.5, 0.7, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
+
+REACH, NARROWEST = 4.0, 0.004
+"""Where more than this is left of a sample in the next window, as where a motion begins, a nearer
+one is led through first, down to this share of the time."""
+
+STRAIGHT = 0.8
+"""A step that brings less than this of what it promises has left where differences hold: what
+everything does is simulated anew."""
 
 STEPS, LAST_STEPS = 5, 25
 """So many steps are taken in each window, at most; in the last, over the whole of the time, until
 none promises anything: what is left there is compared to a few units in tens of thousands."""
 
-STRETCHES = 100
+TELLING = 10.0
+"""Where this is left of the squared misfit of a sample, the ring has just been lost."""
+
+STRETCHES = 200
 """How closely it is told up to where a ring could be followed."""
 
 THERE = 1.02
@@ -67,6 +78,9 @@ class Followed:
         Of the time: the shortest over which more than `FAINT` is left, or 1.
     left
         Squared misfit of a sample over that time, on average.
+    telling
+        Of the time: the shortest over which more than `TELLING` is left, or 1. What is left out
+        shows where it throws the ring out of phase; before that, parameters make up for it.
     misfit
         Squared misfit of all samples.
     costs
@@ -77,6 +91,7 @@ class Followed:
     state: State | None
     share: float = 1.0
     left: float = np.inf
+    telling: float = 1.0
     misfit: float = np.inf
     costs: tuple[float, ...] = ()
 
@@ -145,53 +160,88 @@ def follow_ring(
     samples = Samples(system, held=held, everything=everything)
     way = _Way(samples, Followed(nuisance, state))
     costs: list[float] = []
-    for share in WINDOWS[-1:] if near else WINDOWS:
+    windows = list(reversed(WINDOWS[-1:] if near else WINDOWS))
+    reached = 0.0
+    while windows:
+        share = windows[-1]
+        if reached and way.left(share) > REACH and share - reached > NARROWEST:
+            windows.append(0.5 * (reached + share))
+            continue
+        reached = windows.pop()
         for _ in range(STEPS if share < 1.0 else LAST_STEPS):
-            if not way.step(share):
+            if not way.step(share, lost=LOST if costs or near else np.inf):
                 break
+        if share not in WINDOWS:
+            continue
         costs.append(way.cost(share))
         behind = len(ahead) >= len(costs) and costs[-1] > ahead[len(costs) - 1] + BEHIND
         if way.left(share) > (FAINT if state is None else GOES_ON) or behind:
             break
+    way.look(1.0)
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
     left, share = next((one for one in lefts if one[0] > FAINT), lefts[-1])
-    misfit = float(way.here @ way.here)
-    return replace(way.at, share=float(share), left=left, misfit=misfit, costs=tuple(costs))
+    _, telling = next((one for one in lefts if one[0] > TELLING), lefts[-1])
+    return replace(
+        way.at,
+        share=float(share),
+        left=left,
+        telling=float(telling),
+        misfit=float(way.here @ way.here),
+        costs=tuple(costs),
+    )
 
 
 class _Way:
-    """Where one is, and what every free number does about there."""
+    """Where one is, and what every free number does about there, up to some share of the time."""
 
     def __init__(self, samples: Samples, start: Followed) -> None:
         self._samples = samples
         self.at = start
-        (self.here,) = samples.residuals([start.point])
+        self.here = np.zeros(0)
+        self._seen = 0.0
         self._columns: Array | None = None
         self._steps = np.zeros(0)
 
+    def look(self, share: float) -> None:
+        """Simulate up to a share of the time, if that was not done."""
+        if share > self._seen:
+            (self.here,) = self._samples.residuals([self.at.point], share)
+            self._seen, self._columns = share, None
+
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
+        self.look(share)
         inside = self._samples.shares <= share
         return float(np.mean(self.here[inside] ** 2)) if inside.any() else 0.0
 
     def cost(self, share: float) -> float:
         """Squared misfit up to a share of the time, and of the parameters to their prior."""
+        self.look(share)
         inside = self.here[self._samples.shares <= share]
         return float(inside @ inside + self.at.nuisance @ self.at.nuisance)
 
-    def step(self, share: float) -> bool:
-        """One Gauss-Newton step over the samples up to a share of the time, if there is one."""
+    def step(self, share: float, lost: float = LOST) -> bool:
+        """One Gauss-Newton step over the samples up to a share of the time, if there is one.
+
+        Parameters
+        ----------
+        share
+            Of the time.
+        lost
+            Where more than this is left of a sample, squared and on average, there is none.
+        """
+        self.look(share)
         inside = self._samples.shares <= share
         here = self.here[inside]
         if not len(here):
             return False
         near = share < 1.0 and float(here @ here) < THERE * len(here)
-        if near or not float(here @ here) < LOST * len(here):
+        if near or not float(here @ here) < lost * len(here):
             return False
         fresh = self._columns is None
         if self._columns is None:
             points, self._steps = self.at.neighbours()
-            rows = np.stack(self._samples.residuals(points))
+            rows = np.stack(self._samples.residuals(points, self._seen))
             self._columns = (self.here - rows) / self._steps[:, None]
         if self._step(inside):
             return True
@@ -199,7 +249,7 @@ class _Way:
         if fresh or (share < 1.0 and self.left(share) < FAINT):
             return False
         self._columns = None
-        return self.step(share)
+        return self.step(share, lost)
 
     def _step(self, inside: NDArray[np.bool_]) -> bool:
         assert self._columns is not None
@@ -217,10 +267,13 @@ class _Way:
         share = 1.0
         for _ in range(SHORTEST):
             there = self.at.moved(target, share)
-            (found,) = self._samples.residuals([there.point])
+            (found,) = self._samples.residuals([there.point], self._seen)
             left = found[inside]
-            if float(left @ left + there.nuisance @ there.nuisance) < before:
+            fell = before - float(left @ left + there.nuisance @ there.nuisance)
+            if fell > 0.0:
                 self._learn(there, found)
+                if fell < STRAIGHT * float(right @ target):
+                    self._columns = None
                 return True
             share *= SHORTER
         return False

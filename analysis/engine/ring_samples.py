@@ -1,6 +1,7 @@
 """The samples by which a ring is followed, in units of their noise."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -37,12 +38,35 @@ class Samples:
         ]
         self._whiten = [np.linalg.inv(np.linalg.cholesky(one.covariance)) for one in system.bundles]
 
-    def residuals(self, points: Sequence[Point]) -> list[Array]:
-        """Of each point, in units of noise, shape (n,)."""
+    def residuals(self, points: Sequence[Point], share: float = 1.0) -> list[Array]:
+        """Of each point, in units of noise, shape (n,).
+
+        Parameters
+        ----------
+        points
+            What is simulated.
+        share
+            Samples after this share of them need not be: they are zero.
+        """
+        upto, after = self._upto(share), self.shares > share
+        asked = [replace(one, upto=upto) for one in points]
         found: list[Array] = []
         for first in range(0, len(points), BATCH):
-            found += self.system.simulate(points[first : first + BATCH], self._residual)
+            found += self.system.simulate(asked[first : first + BATCH], self._residual)
+        for one in found:
+            one[after] = 0.0
         return found
+
+    def _upto(self, share: float) -> float:
+        """Share of a recording's time that a share of its samples takes, of the longest."""
+        longest = 0.0
+        for bundle, chosen in zip(self.system.bundles, self._mask, strict=True):
+            places = np.flatnonzero(chosen)
+            if len(places):
+                last = places[min(int(np.ceil(share * len(places))), len(places) - 1)]
+                t_s = bundle.t_s
+                longest = max(longest, float((t_s[last] - t_s[0]) / (t_s[-1] - t_s[0])))
+        return longest
 
     def _residual(self, prediction: Prediction) -> Array:
         """Residuals of the samples that count, in blocks, one bundle after the other."""

@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
 from analysis.engine.calibrate import Calibrated, calibrate
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, followed_search, ring_promises
@@ -13,7 +11,7 @@ from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT, LOST, Followed, follow_ring
+from analysis.engine.ring_fit import FAINT, LOST, follow_ring
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.system import Array, System
@@ -28,11 +26,6 @@ WORTH_FOLLOWING = 8.0
 UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
 is seen without it."""
-
-PROMISING = 3.0
-"""What is led to the ring's phase leaves, without the ring, no more than this of the squared misfit
-of a feature."""
-
 
 @dataclass(frozen=True)
 class Search:
@@ -130,7 +123,7 @@ def search(
             faint=faint,
         )  # fmt: skip
 
-    nothing = _nothing(system, calibrated)
+    nothing = follow_ring(system, calibrated.at, everything=True) if rings(system) else None
     promises: list[Fitted] = []
     if nothing is not None and nothing.left < LOST:
         chosen = [one for one in system.candidates if not one.fixed]
@@ -140,17 +133,17 @@ def search(
             if not _promising(faintly):
                 return found(screened, faintly, faint=True)
             single = [one for one in faintly if len(one.hypothesis.parts) == 1]
-            tried = _to_follow(system, refiner, null, single, single)
-            rung = followed_search(refiner, tried, nothing, most_causes, following)
+            tried = _to_follow(system, null, single, single)
+            rung = followed_search(refiner, tried, single, nothing, most_causes, following)
             return found(screened, rung or faintly, faint=True)
         promises = ring_promises(about, refiner)
     finder = Finder(refiner, terms, tell)
     singles = finder.find(null, most_causes)
     ranked = finder.ranked()
-    if rings(system) and (nothing is not None or _near(ranked[0])):
-        nothing = nothing or follow_ring(system, calibrated.at, everything=True)
-        tried = _to_follow(system, refiner, null, promises, ranked)
-        rung = followed_search(refiner, tried, nothing, most_causes, following)
+    if nothing is not None:
+        tried = _to_follow(system, null, promises, ranked)
+        single = [*promises, *(one for one in ranked if len(one.hypothesis.parts) == 1)]
+        rung = followed_search(refiner, tried, single, nothing, most_causes, following)
         if rung is not None:
             return found(singles, rung, faint=True)
     return found(singles, ranked, faint=False)
@@ -158,28 +151,23 @@ def search(
 
 def _to_follow(
     system: System,
-    refiner: Refiner,
     null: Fitted,
     promises: Sequence[Fitted],
     ranked: Sequence[Fitted],
 ) -> list[Fitted]:
     """Hypotheses worth leading to the ring's phase, one for each set of candidates.
 
-    What the ring promises, what is likely, and other laws of their families.
+    What the ring promises, and what is likely without it.
     """
     many = len({bundle.record for bundle in system.bundles}) > 1
     most = FOLLOWED_OF_MANY if many else FOLLOWED
     least = null.log_score - UNLIKELY
     likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:most]
-    family = {name: one.family for name, one in refiner.candidates.items()}
     # Which places are on, lines tell better, where they tell anything.
     seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
     known = (*(seen.get(one.hypothesis.names, one) for one in promises[:most]), *likely)
-    kin = {family[name] for one in known for name in one.hypothesis.names} - {""}
-    single = [one for one in ranked if len(one.hypothesis.parts) == 1]
-    related = [one for one in single if family[one.hypothesis.names[0]] in kin]
     tried: dict[tuple[str, ...], Fitted] = {}
-    for one in (*known, *related):
+    for one in known:
         tried.setdefault(one.hypothesis.names, one)
     return list(tried.values())
 
@@ -189,23 +177,7 @@ def rings(system: System) -> bool:
     return any(bundle.tones_hz for bundle in system.bundles)
 
 
-def _nothing(system: System, calibrated: Calibrated) -> Followed | None:
-    """How far parameters alone lead to the ring's phase; None where they do not fit without it."""
-    problem = calibrated.problem
-    misfit = float(np.mean((problem.residual**2 / problem.base)[problem.used]))
-    if misfit > PROMISING or not rings(system):
-        return None
-    return follow_ring(system, calibrated.at, everything=True)
-
-
 def _promising(faintly: Sequence[Fitted]) -> bool:
     """Whether anything explains, in straight lines, much more than parameters do."""
     nothing = next(one for one in faintly if not one.hypothesis.parts)
     return faintly[0].log_score > nothing.log_score + WORTH_FOLLOWING
-
-
-def _near(fitted: Fitted) -> bool:
-    """Whether a hypothesis fits without the ring, so that it may be led to it."""
-    problem = fitted.problem
-    left = problem.residual - problem.nuisance @ (fitted.weighed.nuisance - problem.at)
-    return float(np.mean((left**2 / fitted.weighed.variance)[problem.used])) < PROMISING

@@ -260,11 +260,15 @@ class Point:
     ring
         What becomes of the system's own ring, where it has one: the phase of a ring that a kick
         left long ago cannot be foretold, and hides what the drive's own lines show.
+    upto
+        Share of each recording's time that is asked for, from its first sample on: a simulator may
+        leave out the rest, and predict anything there.
     """
 
     nuisance: Array
     effects: Mapping[str, Setting] = field(default_factory=dict)
     ring: Ring = "left_out"
+    upto: float = 1.0
 
 
 Prediction = list[Array]

@@ -122,7 +122,7 @@ def test_a_cable_never_gives_more_than_it_takes(effect: Effect) -> None:
         pytest.skip("acts across the cable")
     answer = cable_response(effect, cycles=8 if effect.name == "frame_compliance" else 3)
     scale = np.abs(answer.force - answer.mean).max() * np.abs(answer.rate).max() / 2.0
-    assert answer.work > -0.02 * scale
+    assert answer.work >= -0.02 * scale
 
 
 @pytest.mark.parametrize("name", ["platform_damping", "air_drag", "umbilical"])
@@ -240,9 +240,61 @@ def test_play_needs_an_amplitude() -> None:
 
 
 def test_pulley_geometry_is_even_without_a_loop() -> None:
-    answer = cable_response(library()["pulley_geometry"])
+    answer = cable_response(library()["pulley_geometry"], {"left_at_rest": 1.0})
     assert answer.share(2) > 1e-3
     assert abs(answer.quadrature[1]) < 1e-9
+
+
+def over_a_wheel(anchor: np.ndarray, base: np.ndarray, radius_m: float) -> float:
+    """Length of a cable that comes up through `base`, goes over a wheel, and leaves it tangent."""
+    centre = np.array([np.hypot(*(base - anchor)[:2]) - radius_m, base[2] - anchor[2]])
+    turns = np.linspace(0.0, np.pi, 2_000_001)
+    radial = np.stack([np.cos(turns), np.sin(turns)])
+    line = centre[:, None] + radius_m * radial
+    (left,) = np.flatnonzero(np.diff(np.sign((line * radial).sum(axis=0))))
+    return float(np.hypot(*line[:, left]) + radius_m * turns[left])
+
+
+def test_pulley_geometry_is_that_of_a_wheel(rig: Rig) -> None:
+    radius_m = 0.03
+    effect = library()["pulley_geometry"]
+    machine = Machine.from_rig(rig)
+    assert effect.change is not None
+    moved = effect.change(machine, np.full(8, radius_m), np.zeros(8))
+    for i in range(8):
+        anchor, base = machine.anchor[i], machine.base[i]
+        way = 0.01 * np.array([0.3, -0.2, 0.9])
+        exact = [over_a_wheel(anchor + d, base, radius_m) for d in (0.0 * way, way)]
+        ours = [np.linalg.norm(moved.base[i] - anchor - d) for d in (0.0 * way, way)]
+        bare = [np.linalg.norm(base - anchor - d) for d in (0.0 * way, way)]
+        wrong = (bare[1] - bare[0]) - (exact[1] - exact[0])
+        assert abs((ours[1] - ours[0]) - (exact[1] - exact[0])) < 0.1 * abs(wrong)
+
+
+def test_a_rolling_shutter_turns_a_moving_plate() -> None:
+    """Corners of a plate, each seen when its row is read, and a rigid plate fitted to them."""
+    from scipy.spatial.transform import Rotation
+
+    late, half, beside = 0.03 / 0.3, 0.03, 0.1
+    corners = np.array([[x, beside, z] for x in (-half, half) for z in (-half, half)])
+    rate = np.array([0.02, 0.01, -0.015, 0.2, -0.3, 0.25])
+
+    def look(stamp_s: np.ndarray) -> np.ndarray:
+        return np.outer(stamp_s, rate)
+
+    seen = np.empty((4, 3))
+    for k, corner in enumerate(corners):
+        pose = look(np.array([late * corner[2]]))[0]
+        seen[k] = pose[:3] + Rotation.from_euler("xyz", pose[3:]).apply(corner)
+    turned, _ = Rotation.align_vectors(seen - seen.mean(axis=0), corners - corners.mean(axis=0))
+    exact = np.hstack(
+        [seen.mean(axis=0) - turned.apply(corners.mean(axis=0)), turned.as_euler("xyz")]
+    )
+    effect = library()["camera_rolling_shutter"]
+    assert effect.measure is not None
+    ours = effect.measure(look, 0.03, 0.3, beside, half)(np.zeros(1))[0]
+    size = np.abs(exact).max()
+    assert np.abs(ours - exact).max() < 0.02 * size
 
 
 def test_pulley_inertia_goes_with_the_acceleration() -> None:
