@@ -74,9 +74,11 @@ def headline(said: Statement) -> str:
             f"{listed([_set(one) for one in causes], 'and beside it')}."
         )
     if verdict == "unexplained":
-        return (
-            "The simulation does not follow the recording, and nothing in the library of effects "
-            "says why."
+        near = listed([_set(one) for one in causes], "with")
+        return "The simulation does not follow the recording, and nothing in the library of " + (
+            f"effects brings it to the noise. Nearest comes {near}, more likely wrong than right."
+            if causes
+            else "effects says why."
         )
     return (
         f"Recording and simulation differ in {len(said['located'])} places beyond the noise; "

@@ -20,6 +20,10 @@ POORLY = 2.0
 """A hypothesis whose misfit is more than this for each feature leaves something unexplained."""
 
 
+REMAINS = 1.25
+"""Where it was led to the ring's phase: what is more than this for each sample."""
+
+
 @dataclass(frozen=True)
 class Remains:
     """What the chosen hypothesis leaves.
@@ -27,7 +31,7 @@ class Remains:
     Attributes
     ----------
     misfit
-        Squared residual over its variance, a feature.
+        Squared residual over its variance, a feature; of a sample, where the ring was followed.
     significant
         Whether that is more than noise and the error of form allow.
     findings
@@ -111,7 +115,8 @@ def diagnose(
     searched = search(system, tell, anew=anew, most_causes=most_causes)
     problem = searched.calibrated.problem
     findings = locate(system.bundles, problem, searched.null.problem.residual)
-    judgement = judge(searched.fitted, {one.name: one for one in system.candidates})
+    candidates = {one.name: one for one in system.candidates}
+    judgement = judge(searched.fitted, candidates, lost=searched.lost)
     remains = _remains(searched, judgement)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
@@ -125,9 +130,11 @@ def _remains(searched: Search, judgement: Judgement) -> Remains:
     problem, weighed = chosen.problem, chosen.weighed
     residual = problem.residual + problem.nuisance @ (problem.at - weighed.nuisance)
     used = problem.used
-    misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
     scaled = _allowed(residual, weighed.variance, problem.base)
     found = locate(searched.system.bundles, problem, np.where(used, scaled, 0.0))
+    if searched.faint and not np.isnan(chosen.left):
+        return Remains(chosen.left, chosen.left > REMAINS, found)
+    misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
     return Remains(misfit, misfit > POORLY, found)
 
 

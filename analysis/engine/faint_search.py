@@ -29,6 +29,10 @@ MORE, ASKS = 3, 4.0
 """Beside the best that was led to the phase, so many are tried with one cause more, where the ring
 promises this rise of the score."""
 
+FAR_BEHIND = 15.0
+"""Near the ring's phase, other laws of one thing that promise to stay this far behind are not led
+there."""
+
 NEARLY = 0.9
 """All places alike are followed where they promise this share of what the best places do."""
 
@@ -87,6 +91,8 @@ def followed_search(
     nothing: Followed,
     most_causes: int,
     progress: Progress | None = None,
+    *,
+    near: bool = False,
 ) -> list[Fitted] | None:
     """Hypotheses led to the ring's phase, each for itself, and with one cause more where it asks.
 
@@ -104,6 +110,8 @@ def followed_search(
         Of a hypothesis.
     progress
         Told of it.
+    near
+        All of them are near the ring's phase, and their scores tell what each can come to.
 
     Returns
     -------
@@ -115,9 +123,11 @@ def followed_search(
     count = len(samples.shares)
     led: list[Followed] = []
 
-    def lead(nuisance: Array, state: State) -> None:
-        ahead = min(led, key=_farthest).costs if led else ()
-        found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
+    def lead(nuisance: Array, state: State, *, near: bool) -> None:
+        ahead = min(led, key=_farthest).costs if led else None
+        found = follow_ring(system, nuisance, state, everything=True, ahead=ahead, near=near)
+        if near and found.share < 1.0:
+            found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
             sharper = sharpened(state, lambda there: -_misfit(samples, found.nuisance, there))
             if sharper is not state:
@@ -127,9 +137,11 @@ def followed_search(
             progress(len(led), max(len(hypotheses), len(led)))
 
     for one in hypotheses:
-        lead(one.point.nuisance, one.state)
+        lead(one.point.nuisance, one.state, near=near)
+    least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
     for one in _kin(refiner, led, others):
-        lead(one.point.nuisance, one.state)
+        if not near or one.log_score > least:
+            lead(one.point.nuisance, one.state, near=near)
     for _ in range(most_causes - 1):
         best = min(led, key=_farthest, default=nothing)
         if best.left > LOST or len(_names(best)) >= most_causes:
@@ -138,7 +150,8 @@ def followed_search(
         found = faint(system, best, _others(refiner, best))
         for scored in _more(found, refiner)[:MORE]:
             if scored.hypothesis.names not in tried:
-                lead(_nuisance(found, scored), State.of(scored, refiner.candidates))
+                state = State.of(scored, refiner.candidates)
+                lead(_nuisance(found, scored), state, near=best.share == 1.0)
         if min(led, key=_farthest, default=nothing) is best:
             break
     nulls = [nothing]
@@ -180,7 +193,7 @@ def _weighed(
         prior = state.hypothesis.log_prior(refiner.candidates)
         score = float(np.logaddexp.reduce(logs)) - strain + prior
         there = refiner.at(state, refiner.directions_of(one.nuisance))
-        fitted.append(replace(there, log_score=score, point=one.point))
+        fitted.append(replace(there, log_score=score, point=one.point, left=one.misfit / count))
     return sorted(fitted, key=lambda one: -one.log_score)
 
 
@@ -322,4 +335,9 @@ def _fitted(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
     """The hypothesis as others are, with the score that the ring gives it."""
     nuisance, state = _nuisance(found, scored), State.of(scored, refiner.candidates)
     fitted = refiner.at(state, refiner.directions_of(nuisance))
-    return replace(fitted, log_score=scored.log_score, point=Followed(nuisance, state).point)
+    return replace(
+        fitted,
+        log_score=scored.log_score,
+        point=Followed(nuisance, state).point,
+        left=found.followed.left,
+    )

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import nan
 
 from analysis.engine.evidence import Problem, Weighed
 from analysis.engine.hypothesis import Hypothesis
@@ -37,6 +38,9 @@ class Fitted:
         (candidate, number) that ended at the edge of its plausible range.
     state
         The free numbers.
+    left
+        Squared misfit of a sample, ring and all, on average; not a number where it was not led to
+        the ring's phase.
     """
 
     hypothesis: Hypothesis
@@ -52,3 +56,4 @@ class Fitted:
     columns: Mapping[str, Array]
     at_limit: tuple[tuple[str, str], ...]
     state: State
+    left: float = nan

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +40,14 @@ IMPLAUSIBLE = 4.0
 
 CERTAIN = 0.9
 """A cause named alone is at least this likely."""
+
+NOISE, DOUBTFUL = 1.06, 0.5
+"""The squared misfit of a sample that noise allows, known as well as a second of rest tells it; and
+how much more leaves it even whether what explains best is what is there."""
+
+MOST_DOUBT = 0.6
+"""Where no simulation can be led to the ring's phase, or is far from the noise when it is: what
+explains the lines best is then more often wrong than right."""
 
 
 @dataclass(frozen=True)
@@ -100,22 +108,27 @@ class Judgement:
     Attributes
     ----------
     verdict
-        "none", "parameter", "explained" or "ambiguous".
+        "none", "parameter", "explained", "ambiguous" or "unexplained".
     causes
         The causes, the surest first; empty for "none".
     chosen
         The likeliest hypothesis.
     probability
         Of each fitted hypothesis, in their order.
+    doubt
+        The probability that it is something else: the best leaves more than noise.
     """
 
     verdict: str
     causes: tuple[Cause, ...]
     chosen: Fitted
     probability: tuple[float, ...]
+    doubt: float = 0.0
 
 
-def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judgement:
+def judge(
+    fitted: Sequence[Fitted], candidates: Mapping[str, Candidate], *, lost: bool = False
+) -> Judgement:
     """Weigh the fitted hypotheses.
 
     Parameters
@@ -124,6 +137,8 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
         The hypotheses, the null among them.
     candidates
         By name.
+    lost
+        The system rings, and no hypothesis could be led to the ring's phase.
     """
     scores = np.array(
         [-np.inf if negligible(one, candidates) else _plausible_score(one) for one in fitted]
@@ -160,8 +175,34 @@ def judge(fitted: Sequence[Fitted], candidates: Mapping[str, Candidate]) -> Judg
             break
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
-    causes = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
-    return Judgement(_verdict(causes, candidates), causes, chosen, tuple(float(w) for w in weights))
+    doubt = doubt_of(chosen, lost=lost)
+    sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
+    causes = tuple(_doubted(one, doubt) for one in sure)
+    verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)
+    return Judgement(verdict, causes, chosen, tuple(float(w) for w in weights), doubt)
+
+
+def doubt_of(fitted: Fitted, *, lost: bool) -> float:
+    """The probability that what explains best is not what is there, by what it leaves."""
+    if lost:
+        return MOST_DOUBT
+    if np.isnan(fitted.left):
+        return 0.0
+    beyond = max(fitted.left - NOISE, 0.0) / DOUBTFUL
+    return min(beyond / (1.0 + beyond), MOST_DOUBT)
+
+
+def _doubted(cause: Cause, doubt: float) -> Cause:
+    """A cause that is as much less likely, and so are its rivals."""
+    rivals = tuple(
+        replace(one, probability=one.probability * (1.0 - doubt)) for one in cause.rivals
+    )
+    return replace(
+        cause,
+        probability=cause.probability * (1.0 - doubt),
+        present=cause.present * (1.0 - doubt),
+        rivals=rivals,
+    )
 
 
 def _among_kin(

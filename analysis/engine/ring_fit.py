@@ -5,12 +5,13 @@ Over a short stretch none is far off: parameters are led to the phase there firs
 longer stretches, as far as it can be followed. Where it cannot be followed further tells as much.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.evidence import bounded
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, Point, System
@@ -45,8 +46,13 @@ WORTH_A_STEP = 2.0
 WORTH_ON_THE_WAY = 0.003
 """or, in a window that is not the last, than this share of it."""
 
-STEP = 0.02
-"""Of the difference that tells what a parameter does, in sigmas: longer ones turn the phase."""
+STEP, FINE = 5e-4, 0.025
+"""Of the difference that tells what a parameter does, in sigmas, and of what is on, as a share of
+its step. Longer ones turn the phase: at 40 times this, what differences are off by is larger than
+what the weakest directions do, and steps along them lead nowhere."""
+
+LOOSE = 0.02
+"""What is on is held where it is as if its number were known to its step over this."""
 
 SHORTER, SHORTEST = 0.4, 3
 """A step that went too far is taken again, this much of it, and so often."""
@@ -84,7 +90,8 @@ class Followed:
     misfit
         Squared misfit of all samples.
     costs
-        Squared misfit at the end of each window, with that of the parameters to their prior.
+        Share of the time at the end of each window -> squared misfit up to there, with that of the
+        parameters to their prior.
     """
 
     nuisance: Array
@@ -93,7 +100,7 @@ class Followed:
     left: float = np.inf
     telling: float = 1.0
     misfit: float = np.inf
-    costs: tuple[float, ...] = ()
+    costs: Mapping[float, float] = field(default_factory=dict)
 
     @property
     def point(self) -> Point:
@@ -127,8 +134,8 @@ class Followed:
             steps.append(STEP)
         if self.state is not None:
             for k in range(len(self.state.free)):
-                points.append(replace(self, state=self.state.bumped(k)).point)
-                steps.append(self.state.signed_step(k))
+                points.append(replace(self, state=self.state.bumped(k, FINE)).point)
+                steps.append(self.state.signed_step(k, FINE))
         return points, np.array(steps)
 
 
@@ -140,7 +147,7 @@ def follow_ring(
     held: str = "",
     everything: bool = False,
     near: bool = False,
-    ahead: Sequence[float] = (),
+    ahead: Mapping[float, float] | None = None,
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -155,11 +162,11 @@ def follow_ring(
     near
         The phase is near enough for the whole of the time at once.
     ahead
-        Costs of another hypothesis, window by window.
+        Costs of another hypothesis: what stays far behind it is given up.
     """
     samples = Samples(system, held=held, everything=everything)
     way = _Way(samples, Followed(nuisance, state))
-    costs: list[float] = []
+    costs: dict[float, float] = {}
     windows = list(reversed(WINDOWS[-1:] if near else WINDOWS))
     reached = 0.0
     while windows:
@@ -173,8 +180,8 @@ def follow_ring(
                 break
         if share not in WINDOWS:
             continue
-        costs.append(way.cost(share))
-        behind = len(ahead) >= len(costs) and costs[-1] > ahead[len(costs) - 1] + BEHIND
+        costs[share] = way.cost(share)
+        behind = costs[share] > (ahead or {}).get(share, np.inf) + BEHIND
         if way.left(share) > (FAINT if state is None else GOES_ON) or behind:
             break
     way.look(1.0)
@@ -187,7 +194,7 @@ def follow_ring(
         left=left,
         telling=float(telling),
         misfit=float(way.here @ way.here),
-        costs=tuple(costs),
+        costs=costs,
     )
 
 
@@ -255,11 +262,14 @@ class _Way:
         assert self._columns is not None
         at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
         # What a short window does not tell of a law stays about where it is (Levenberg 1944).
-        held = (STEP / self._steps[len(at) :]) ** 2
+        held = (LOOSE * FINE / self._steps[len(at) :]) ** 2
         matrix = columns @ columns.T + np.diag(np.concatenate([np.ones(len(at)), held]))
         right = columns @ here
         right[: len(at)] -= at
-        target: Array = np.asarray(np.linalg.solve(matrix, right), dtype=float)
+        lows, highs = np.full(len(right), -np.inf), np.full(len(right), np.inf)
+        if self.at.state is not None:
+            lows[len(at) :], highs[len(at) :] = self.at.state.bounds()
+        target = bounded(matrix, right, lows, highs)
         before = float(here @ here + at @ at)
         worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
         if float(right @ target) < worth:

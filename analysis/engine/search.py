@@ -27,6 +27,7 @@ UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
 is seen without it."""
 
+
 @dataclass(frozen=True)
 class Search:
     """Everything that was found out.
@@ -61,6 +62,11 @@ class Search:
     fitted: tuple[Fitted, ...]
     refiner: Refiner
     faint: bool = False
+
+    @property
+    def lost(self) -> bool:
+        """Whether the system rings, and nothing could be led to the ring's phase."""
+        return rings(self.system) and not self.faint
 
 
 class Look(NamedTuple):
@@ -134,7 +140,9 @@ def search(
                 return found(screened, faintly, faint=True)
             single = [one for one in faintly if len(one.hypothesis.parts) == 1]
             tried = _to_follow(system, null, single, single)
-            rung = followed_search(refiner, tried, single, nothing, most_causes, following)
+            rung = followed_search(
+                refiner, tried, single, nothing, most_causes, following, near=True
+            )
             return found(screened, rung or faintly, faint=True)
         promises = ring_promises(about, refiner)
     finder = Finder(refiner, terms, tell)

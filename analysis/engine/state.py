@@ -90,17 +90,17 @@ class State:
             effects[name] = Setting(values, shapes)
         return Point(nuisance, effects)
 
-    def bumped(self, free: int) -> "State":
-        """With one free number moved by its step, inwards where it stands at its edge."""
+    def bumped(self, free: int, share: float = 1.0) -> "State":
+        """With one free number moved by a share of its step, inwards where it is at its edge."""
         values = self.values.copy()
-        values[self.free[free]] += self.signed_step(free)
+        values[self.free[free]] += self.signed_step(free, share)
         return replace(self, values=values)
 
-    def signed_step(self, free: int) -> float:
-        """The step of a free number."""
+    def signed_step(self, free: int, share: float = 1.0) -> float:
+        """The step of a free number, or a share of it."""
         number = self.numbers[self.free[free]]
-        value = self.values[self.free[free]]
-        return -number.step if value + number.step > number.high else number.step
+        step = share * number.step
+        return -step if self.values[self.free[free]] + step > number.high else step
 
     def moved(self, change: Array, share: float = 1.0) -> "State":
         """With the free numbers moved, within their ranges."""

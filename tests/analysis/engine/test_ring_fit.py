@@ -97,6 +97,29 @@ def test_a_tone_two_sigmas_off_is_led_to_the_recordings_phase() -> None:
     assert found.nuisance[0] == pytest.approx(2.0, abs=0.01)
 
 
+def test_a_ring_a_thousand_times_the_noise_is_followed_from_its_first_cycle_on() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise=2e-4)
+    found = follow_ring(system, np.zeros(1))
+    assert found.share == 1.0
+    assert found.left == pytest.approx(1.0, abs=0.1)
+
+
+def test_no_more_is_simulated_than_is_looked_at() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0))
+    asked: list[float] = []
+    whole = system.simulate
+
+    def simulate(points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        asked.extend(one.upto for one in points)
+        return whole(points, reduce)
+
+    system.simulate = simulate  # type: ignore[method-assign]
+    follow_ring(system, np.zeros(1))
+    assert min(asked) < 0.1
+    assert max(asked) == 1.0
+    assert sum(asked) < 0.6 * len(asked)
+
+
 def test_a_ring_that_dies_away_is_followed_no_further_than_parameters_lead() -> None:
     system = LetGo(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
     alone = follow_ring(system, np.zeros(1))

@@ -1,0 +1,59 @@
+"""The verdict: what is named, how sure, and when the best is not good enough."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.engine.fitted import Fitted
+from analysis.engine.judge import CERTAIN, MOST_DOUBT, judge
+from analysis.engine.refine import Refiner
+from analysis.engine.search import look
+from analysis.engine.state import State
+from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
+
+CANDIDATES = {one.name: one for one in (DAMPING, STEP)}
+
+
+@pytest.fixture(scope="module")
+def refiner() -> Refiner:
+    system = LetGo(ring(0.0, 0.2, 0.0, 0.0))
+    found = look(system)
+    return Refiner(system, found.lens, found.data, found.calibrated)
+
+
+def fitted(refiner: Refiner, state: State | None, score: float, left: float) -> Fitted:
+    from analysis.engine.hypothesis import Hypothesis
+
+    there = state or State(Hypothesis(), CANDIDATES, (), np.zeros(0))
+    return replace(refiner.at(there, np.zeros(1)), log_score=score, left=left)
+
+
+def of(refiner: Refiner, left: float) -> list[Fitted]:
+    """Damping, far before a step and nothing, that leaves so much of each sample."""
+    return [
+        fitted(refiner, state_of(DAMPING, 0.2), -10.0, left),
+        fitted(refiner, state_of(STEP, 1.0, moment=4.0), -90.0, left),
+        fitted(refiner, None, -100.0, 50.0),
+    ]
+
+
+def test_what_comes_to_the_noise_is_named(refiner: Refiner) -> None:
+    said = judge(of(refiner, 1.02), CANDIDATES)
+    assert said.verdict == "explained"
+    assert [one.name for one in said.causes] == ["damping"]
+    assert said.causes[0].probability > CERTAIN
+
+
+def test_the_more_the_best_leaves_the_less_it_is_believed(refiner: Refiner) -> None:
+    sure = [judge(of(refiner, left), CANDIDATES).causes[0].probability for left in (1.0, 1.2, 1.5)]
+    assert sure[0] > sure[1] > sure[2]
+    assert judge(of(refiner, 1.3), CANDIDATES).verdict == "ambiguous"
+    assert judge(of(refiner, 3.0), CANDIDATES).verdict == "unexplained"
+
+
+def test_where_no_ring_can_be_followed_the_best_is_no_more_than_a_guess(refiner: Refiner) -> None:
+    said = judge(of(refiner, np.nan), CANDIDATES, lost=True)
+    assert said.verdict == "unexplained"
+    assert said.causes[0].name == "damping"
+    assert said.causes[0].probability <= 1.0 - MOST_DOUBT
