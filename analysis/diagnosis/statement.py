@@ -6,9 +6,9 @@ from typing import Any
 
 from analysis.diagnosis.candidates import PAIRS
 from analysis.diagnosis.machine import RecordedMachine
+from analysis.engine.cause import Cause
 from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
-from analysis.engine.judge import Cause
 from analysis.engine.locate import Finding
 
 WHEN = {

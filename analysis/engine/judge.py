@@ -2,10 +2,11 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.cause import Cause, cause_of, doubted
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import LOG_ODDS
 from analysis.engine.system import Array, Candidate
@@ -22,12 +23,6 @@ that explain it: the more there is, the more their form counts."""
 
 SIMPLER = 0.7
 """Of laws of one family, each number of shape takes this off the logarithm of odds."""
-
-COVERED = 0.97
-"""A set of indistinguishable causes holds this much of the probability."""
-
-LEAST_SHARE = 0.02
-"""A rival less likely than this, beside the named cause, is not in its set."""
 
 NEGLIGIBLE = 0.02
 """A magnitude below this share of its usual size is nothing."""
@@ -48,57 +43,6 @@ how much more leaves it even whether what explains best is what is there."""
 MOST_DOUBT = 0.6
 """Where no simulation can be led to the ring's phase, or is far from the noise when it is: what
 explains the lines best is then more often wrong than right."""
-
-
-@dataclass(frozen=True)
-class Rival:
-    """A cause that could stand in for another."""
-
-    name: str
-    probability: float
-    fitted: Fitted
-
-
-@dataclass(frozen=True)
-class Cause:
-    """One cause of the mismatch.
-
-    Attributes
-    ----------
-    name
-        The likeliest candidate.
-    probability
-        That it is this one, and that there is one at all.
-    present
-        That there is a cause here, whichever it is.
-    rivals
-        Others that these data do not tell from it, the likeliest first.
-    values, sigmas
-        Term -> magnitude and standard deviation, for the terms that are on: the mean over the laws
-        of one family that are in the set, as likely as they are, and what they differ by counts.
-    own
-        Term -> magnitude by its law alone, which goes with
-    shapes, shape_sigmas
-        its other numbers.
-    at_limit
-        Numbers at the edge of their plausible range: a better fit with an implausible number.
-    """
-
-    name: str
-    probability: float
-    present: float
-    rivals: tuple[Rival, ...]
-    values: Mapping[str, float]
-    sigmas: Mapping[str, float]
-    own: Mapping[str, float]
-    shapes: Mapping[str, float]
-    shape_sigmas: Mapping[str, float]
-    at_limit: tuple[str, ...]
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The cause and its rivals."""
-        return (self.name, *(one.name for one in self.rivals))
 
 
 @dataclass(frozen=True)
@@ -166,7 +110,7 @@ def judge(
     causes: tuple[Cause, ...] = ()
     for _ in range(len(chosen.hypothesis.parts)):
         every = (
-            _cause(name, chosen, fitted, weights, candidates) for name in chosen.hypothesis.names
+            cause_of(name, chosen, fitted, weights, candidates) for name in chosen.hypothesis.names
         )
         causes = tuple(sorted(every, key=lambda one: -one.present))
         kept = {causes[0].name, *(one.name for one in causes[1:] if one.present > SECOND)}
@@ -177,7 +121,7 @@ def judge(
         chosen = max(fewer, key=lambda one: one.log_score)
     doubt = doubt_of(chosen, lost=lost)
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
-    causes = tuple(_doubted(one, doubt) for one in sure)
+    causes = tuple(doubted(one, doubt) for one in sure)
     verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)
     return Judgement(verdict, causes, chosen, tuple(float(w) for w in weights), doubt)
 
@@ -190,19 +134,6 @@ def doubt_of(fitted: Fitted, *, lost: bool) -> float:
         return 0.0
     beyond = max(fitted.left - NOISE, 0.0) / DOUBTFUL
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
-
-
-def _doubted(cause: Cause, doubt: float) -> Cause:
-    """A cause that is as much less likely, and so are its rivals."""
-    rivals = tuple(
-        replace(one, probability=one.probability * (1.0 - doubt)) for one in cause.rivals
-    )
-    return replace(
-        cause,
-        probability=cause.probability * (1.0 - doubt),
-        present=cause.present * (1.0 - doubt),
-        rivals=rivals,
-    )
 
 
 def _among_kin(
@@ -241,70 +172,6 @@ def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> bool:
 def _plausible_score(fitted: Fitted) -> float:
     """A better fit with an implausible number counts for less."""
     return fitted.log_score - IMPLAUSIBLE * len(fitted.at_limit)
-
-
-def _cause(
-    name: str,
-    chosen: Fitted,
-    fitted: Sequence[Fitted],
-    weights: Array,
-    candidates: Mapping[str, Candidate],
-) -> Cause:
-    others = set(chosen.hypothesis.names) - {name}
-    slot: dict[str, float] = defaultdict(float)
-    best: dict[str, Fitted] = {}
-    nobody = 0.0
-    for one, weight in zip(fitted, weights, strict=True):
-        names = set(one.hypothesis.names)
-        if not others <= names:
-            continue
-        extra = names - others
-        if not extra:
-            nobody += float(weight)
-        elif len(extra) == 1 or name in extra:
-            key = name if name in extra else next(iter(extra))
-            slot[key] += float(weight)
-            if key not in best or one.log_score > best[key].log_score:
-                best[key] = one
-    whole = sum(slot.values())
-    everything = whole + nobody
-    ordered = sorted(slot, key=lambda key: -slot[key])
-    head = ordered[0]
-    rivals, covered = [], slot[head] / whole
-    for key in ordered[1:]:
-        if covered >= COVERED or slot[key] < LEAST_SHARE * slot[head]:
-            break
-        rivals.append(Rival(key, slot[key] / everything, best[key]))
-        covered += slot[key] / whole
-    source = chosen if head == name else best[head]
-    part = source.hypothesis.parts[head]
-    family = candidates[head].family
-    laws = [Rival(head, slot[head] / everything, source)]
-    laws += [one for one in rivals if family and candidates[one.name].family == family]
-    means = {term: _mean(term, laws) for term in part.terms}
-    return Cause(
-        name=head,
-        probability=slot[head] / everything,
-        present=whole / everything,
-        rivals=tuple(rivals),
-        values={term: value for term, (value, _) in means.items()},
-        sigmas={term: sigma for term, (_, sigma) in means.items()},
-        own={term: source.values[head, term] for term in part.terms},
-        shapes=dict(part.shapes),
-        shape_sigmas={k[1]: v for k, v in source.shape_sigmas.items() if k[0] == head},
-        at_limit=tuple(what for who, what in source.at_limit if who == head),
-    )
-
-
-def _mean(term: str, laws: Sequence[Rival]) -> tuple[float, float]:
-    """Mean and standard deviation of a magnitude over laws that have it."""
-    have = [one for one in laws if (one.name, term) in one.fitted.values]
-    weight = np.array([one.probability for one in have])
-    weight = weight / weight.sum()
-    value = np.array([one.fitted.values[one.name, term] for one in have])
-    sigma = np.array([one.fitted.sigmas.get((one.name, term), 0.0) for one in have])
-    mean = float(weight @ value)
-    return mean, float(np.sqrt(weight @ (sigma**2 + (value - mean) ** 2)))
 
 
 def _verdict(causes: Sequence[Cause], candidates: Mapping[str, Candidate]) -> str:

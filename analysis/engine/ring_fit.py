@@ -110,6 +110,11 @@ class Followed:
         return replace(self.state.point(self.nuisance), ring="as_is")
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Of the candidates that are on."""
+        return () if self.state is None else self.state.hypothesis.names
+
+    @property
     def numbers(self) -> Array:
         """Nuisances and the free numbers of the state, shape (numbers,)."""
         if self.state is None:

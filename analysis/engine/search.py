@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 from analysis.engine.calibrate import Calibrated, calibrate
 from analysis.engine.faint import faint
-from analysis.engine.faint_search import faint_search, followed_search, ring_promises
+from analysis.engine.faint_search import faint_search, ring_promises
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
+from analysis.engine.followed_search import followed_search
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, LOST, follow_ring
