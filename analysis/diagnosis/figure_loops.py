@@ -32,7 +32,7 @@ def loops(pictures: Pictures, record: str, look: Look) -> "Figure":
         Colours and width.
     """
     tensions = pictures.of(record, "tension")
-    figure, panels = _grid(len(tensions) + 1, look, 2.0)
+    figure, panels = panel_grid(len(tensions) + 1, look, 2.0)
     run = pictures.record(record)
     worst = most_off(tensions)
     assert worst is not None
@@ -59,7 +59,7 @@ def speeds(pictures: Pictures, record: str, look: Look) -> "Figure":
         Colours and width.
     """
     tensions = pictures.of(record, "tension")
-    figure, panels = _grid(len(tensions), look, 1.9, columns=4)
+    figure, panels = panel_grid(len(tensions), look, 1.9, columns=4)
     run = pictures.record(record)
     stages = (("before", look.before), ("after", look.after))
     for axes, one in zip(panels, tensions, strict=False):
@@ -121,7 +121,9 @@ def _binned(x: Array, y: Array, bins: int) -> tuple[Array, Array, Array]:
     )
 
 
-def _grid(count: int, look: Look, height: float, columns: int = 3) -> "tuple[Figure, list[Axes]]":
+def panel_grid(
+    count: int, look: Look, height: float, columns: int = 3
+) -> "tuple[Figure, list[Axes]]":
     """A figure with as many panels, and room above for the key."""
     from matplotlib.figure import Figure
 

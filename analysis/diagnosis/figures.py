@@ -10,6 +10,7 @@ from analysis.diagnosis.figure_fit import fit, improvement
 from analysis.diagnosis.figure_loops import loops, speeds
 from analysis.diagnosis.figure_maps import residual_map
 from analysis.diagnosis.figure_ranking import ranking_figure
+from analysis.diagnosis.figure_states import states
 from analysis.diagnosis.figure_story import story
 from analysis.diagnosis.figure_style import LIGHT, Look
 from analysis.diagnosis.pictures import Pictures
@@ -47,6 +48,7 @@ def _of_runs(said: Mapping[str, Any], pictures: Pictures) -> Iterator[tuple[str,
             if pictures.of(run.name, "tension"):
                 yield f"loops{after}", partial(loops, pictures, run.name)
                 yield f"speed{after}", partial(speeds, pictures, run.name)
+                yield f"states{after}", partial(states, pictures, run.name)
         yield f"fit{after}", partial(fit, pictures, run.name)
 
 

@@ -36,6 +36,9 @@ CAPTIONS: Mapping[str, str] = {
     "own, the recording that of the better simulation.",
     "speed": "Mean residual of each tension against the speed of its cable; shaded, its spread. A "
     "step at zero is friction, a slope is damping, nothing is a good model.",
+    "states": "The force that is missing, as a map over each cable's elongation and speed, with no "
+    "law assumed. Bands that change sign with the speed are friction or damping; bands across are "
+    "a spring's; white is nothing, or nowhere the cable went.",
     "fit": "Some cycles where the data that were fitted end and those held out begin, and what the "
     "simulations leave of them.",
     "ranking": "Every explanation that was fitted. The dot is how far it is behind the best as it "
@@ -117,6 +120,7 @@ def alt_text(name: str, said: Mapping[str, Any], pictures: Pictures | None) -> s
     words = {
         "loops": "Loops of tension against elongation",
         "speed": "Residual of each tension against the speed of its cable",
+        "states": "Missing force of each cable over its elongation and speed",
         "fit": "Recording and both simulations over time, with residuals,",
     }
     if kind == "story":

@@ -31,12 +31,13 @@ HEADINGS: Mapping[str, str] = {
     "map": "Where they differ",
     "loops": "Tension against elongation",
     "speed": "Residual against speed",
+    "states": "The missing force over the cable's state",
     "ranking": "Rivals",
     "improvement": "Before and after",
     "fit": "Before and after, over time",
 }
 
-ORDER = ("story", "map", "loops", "speed", "ranking", "improvement", "fit")
+ORDER = ("story", "map", "loops", "speed", "states", "ranking", "improvement", "fit")
 
 # Nothing may be fetched: the page says so itself, and a browser holds it to that.
 _HEAD = """<!doctype html>

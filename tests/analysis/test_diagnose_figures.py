@@ -9,6 +9,7 @@ import pytest
 from diagnosis_stand_ins import FRICTION_N, NOISE_N, pictures, result, statement
 
 from analysis.diagnosis.figure_maps import PHASES, by_phase
+from analysis.diagnosis.figure_states import force_map
 from analysis.diagnosis.figure_story import improved, mean_cycle, shown_channel
 from analysis.diagnosis.figure_style import DARK, LIGHT, Look, most_off
 from analysis.diagnosis.figures import drawings, drawn, write_figures
@@ -16,7 +17,7 @@ from analysis.diagnosis.pictures import Pictures
 from analysis.diagnosis.results import read, write
 from cdpr8.errors import DataError
 
-NAMES = ["story", "map", "loops", "speed", "fit", "ranking", "improvement"]
+NAMES = ["story", "map", "loops", "speed", "states", "fit", "ranking", "improvement"]
 
 
 def test_all_of_them_are_there() -> None:
@@ -48,6 +49,18 @@ def test_friction_stands_out_by_phase_as_a_square_and_is_gone_after() -> None:
     stretching = np.cos(2.0 * np.pi * (np.arange(PHASES) + 0.5) / PHASES) > 0.3
     assert before[stretching] == pytest.approx(FRICTION_N / NOISE_N, rel=0.1)
     assert np.abs(by_phase(pictures(), "hand", "after")[0]).max() < 2.0
+
+
+def test_friction_is_two_bands_of_the_force_map_and_no_more() -> None:
+    channel = pictures().of("hand", "tension")[0]
+    _, speed, force = force_map(channel, pictures().record("hand"))
+    middle = 0.5 * (speed[1:] + speed[:-1])
+    fast = np.abs(middle) > 0.3 * np.abs(middle).max()
+    bands = np.nanmean(force[fast], axis=1)
+    assert np.abs(bands) == pytest.approx(FRICTION_N, rel=0.1)
+    assert (np.sign(bands) == np.sign(middle[fast])).all() or (
+        np.sign(bands) == -np.sign(middle[fast])
+    ).all()
 
 
 def test_the_story_shows_the_tension_farthest_off_for_its_swing() -> None:
