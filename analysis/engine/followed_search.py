@@ -22,7 +22,7 @@ RESTARTS = 3
 """Nothing is led to the phase once more from where so many hypotheses have come: one may have found
 a way that nothing missed."""
 
-MORE = 3
+MORE = 2
 """Beside the best that was led to the phase, so many are tried with one cause more."""
 
 FAR_BEHIND = 15.0
@@ -100,7 +100,7 @@ def followed_search(
         for scored in one_more(found, refiner)[:MORE]:
             if scored.hypothesis.names not in tried:
                 state = State.of(scored, refiner.candidates)
-                lead(nuisances_of(found, scored), state, near=best.share == 1.0)
+                lead(nuisances_of(found, scored), state, near=best.reached[0] == 1.0)
         if min(led, key=_farthest, default=nothing) is best:
             break
     nulls = [nothing]
@@ -153,8 +153,9 @@ def _cost(led: Followed) -> float:
 
 
 def _farthest(led: Followed) -> tuple[float, float]:
-    """Least for what was followed farthest, and there is closest."""
-    return -led.share, _cost(led) if led.share == 1.0 else led.left
+    """Least for what was led farthest, and there is closest."""
+    share, cost = led.reached
+    return -share, cost
 
 
 def _kin(refiner: Refiner, led: Sequence[Followed], others: Sequence[Fitted]) -> list[Fitted]:
@@ -162,12 +163,8 @@ def _kin(refiner: Refiner, led: Sequence[Followed], others: Sequence[Fitted]) ->
     if not led:
         return []
     family = {name: one.family for name, one in refiner.candidates.items()}
-    best = min(led, key=_farthest)
-    far = [
-        one
-        for one in led
-        if one.share == best.share and (one.share < 1.0 or _cost(one) < _cost(best) + BEHIND)
-    ]
+    share, cost = min(led, key=_farthest).reached
+    far = [one for one in led if one.reached[0] == share and one.reached[1] < cost + BEHIND]
     known = {one.names for one in led}
     kin = {family[name] for one in far for name in one.names} - {""}
     found: dict[tuple[str, ...], Fitted] = {}

@@ -16,7 +16,7 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, Point, System
 
-WINDOWS = (0.08, 0.1, 0.12, 0.15, 0.2, 0.27, 0.36, 0.5, 0.7, 1.0)
+WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
 
 REACH, NARROWEST = 4.0, 0.004
@@ -27,7 +27,7 @@ STRAIGHT = 0.8
 """A step that brings less than this of what it promises has left where differences hold: what
 everything does is simulated anew."""
 
-STEPS, LAST_STEPS = 5, 25
+STEPS, LAST_STEPS = 5, 12
 """So many steps are taken in each window, at most; in the last, over the whole of the time, until
 none promises anything: what is left there is compared to a few units in tens of thousands."""
 
@@ -45,6 +45,9 @@ WORTH_A_STEP = 2.0
 
 WORTH_ON_THE_WAY = 0.003
 """or, in a window that is not the last, than this share of it."""
+
+CATCHES_UP = 0.1
+"""Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
 
 STEP, FINE = 5e-4, 0.025
 """Of the difference that tells what a parameter does, in sigmas, and of what is on, as a share of
@@ -108,6 +111,12 @@ class Followed:
         if self.state is None:
             return Point(self.nuisance, ring="as_is")
         return replace(self.state.point(self.nuisance), ring="as_is")
+
+    @property
+    def reached(self) -> tuple[float, float]:
+        """The share of the time it was led to, and its cost there: the farther, then the less."""
+        share = max(self.costs, default=0.0)
+        return share, self.costs.get(share, np.inf)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -180,13 +189,14 @@ def follow_ring(
             windows.append(0.5 * (reached + share))
             continue
         reached = windows.pop()
+        best = (ahead or {}).get(share, np.inf)
         for _ in range(STEPS if share < 1.0 else LAST_STEPS):
-            if not way.step(share, lost=LOST if costs or near else np.inf):
+            if not way.step(share, lost=LOST if costs or near else np.inf, best=best):
                 break
         if share not in WINDOWS:
             continue
         costs[share] = way.cost(share)
-        behind = costs[share] > (ahead or {}).get(share, np.inf) + BEHIND
+        behind = costs[share] > best + BEHIND
         if way.left(share) > (FAINT if state is None else GOES_ON) or behind:
             break
     way.look(1.0)
@@ -232,7 +242,7 @@ class _Way:
         inside = self.here[self._samples.shares <= share]
         return float(inside @ inside + self.at.nuisance @ self.at.nuisance)
 
-    def step(self, share: float, lost: float = LOST) -> bool:
+    def step(self, share: float, lost: float = LOST, best: float = np.inf) -> bool:
         """One Gauss-Newton step over the samples up to a share of the time, if there is one.
 
         Parameters
@@ -241,6 +251,8 @@ class _Way:
             Of the time.
         lost
             Where more than this is left of a sample, squared and on average, there is none.
+        best
+            Cost of another hypothesis there: a step must catch up with it.
         """
         self.look(share)
         inside = self._samples.shares <= share
@@ -255,15 +267,15 @@ class _Way:
             points, self._steps = self.at.neighbours()
             rows = np.stack(self._samples.residuals(points, self._seen))
             self._columns = (self.here - rows) / self._steps[:, None]
-        if self._step(inside):
+        if self._step(inside, best):
             return True
         # On the way, near enough is near enough.
         if fresh or (share < 1.0 and self.left(share) < FAINT):
             return False
         self._columns = None
-        return self.step(share, lost)
+        return self.step(share, lost, best)
 
-    def _step(self, inside: NDArray[np.bool_]) -> bool:
+    def _step(self, inside: NDArray[np.bool_], best: float) -> bool:
         assert self._columns is not None
         at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
         # What a short window does not tell of a law stays about where it is (Levenberg 1944).
@@ -277,7 +289,7 @@ class _Way:
         target = bounded(matrix, right, lows, highs)
         before = float(here @ here + at @ at)
         worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
-        if float(right @ target) < worth:
+        if float(right @ target) < max(worth, CATCHES_UP * (before - best)):
             return False
         share = 1.0
         for _ in range(SHORTEST):

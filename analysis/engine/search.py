@@ -17,9 +17,8 @@ from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.system import Array, System
 
-FOLLOWED, FOLLOWED_OF_MANY = 3, 2
-"""Of what the ring promises, and of what is likely without it, so many are led to its phase; fewer
-of several recordings, which take their time and leave less open."""
+FOLLOWED = 2
+"""Of what the ring promises, and of what is likely without it, so many are led to its phase."""
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
@@ -140,7 +139,7 @@ def search(
             if not _promising(faintly):
                 return found(screened, faintly, faint=True)
             single = [one for one in faintly if len(one.hypothesis.parts) == 1]
-            tried = _to_follow(system, null, single, single)
+            tried = _to_follow(null, single, single)
             rung = followed_search(
                 refiner, tried, single, nothing, most_causes, following, near=True
             )
@@ -150,7 +149,7 @@ def search(
     singles = finder.find(null, most_causes)
     ranked = finder.ranked()
     if nothing is not None:
-        tried = _to_follow(system, null, promises, ranked)
+        tried = _to_follow(null, promises, ranked)
         single = [*promises, *(one for one in ranked if len(one.hypothesis.parts) == 1)]
         rung = followed_search(refiner, tried, single, nothing, most_causes, following)
         if rung is not None:
@@ -159,7 +158,6 @@ def search(
 
 
 def _to_follow(
-    system: System,
     null: Fitted,
     promises: Sequence[Fitted],
     ranked: Sequence[Fitted],
@@ -168,13 +166,11 @@ def _to_follow(
 
     What the ring promises, and what is likely without it.
     """
-    many = len({bundle.record for bundle in system.bundles}) > 1
-    most = FOLLOWED_OF_MANY if many else FOLLOWED
     least = null.log_score - UNLIKELY
-    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:most]
+    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
     # Which places are on, lines tell better, where they tell anything.
     seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
-    known = (*(seen.get(one.hypothesis.names, one) for one in promises[:most]), *likely)
+    known = (*(seen.get(one.hypothesis.names, one) for one in promises[:FOLLOWED]), *likely)
     tried: dict[tuple[str, ...], Fitted] = {}
     for one in known:
         tried.setdefault(one.hypothesis.names, one)
