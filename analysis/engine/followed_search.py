@@ -25,6 +25,10 @@ a way that nothing missed."""
 MORE = 2
 """Beside the best that was led to the phase, so many are tried with one cause more."""
 
+EARLY = 0.15
+"""Where none of the first that were tried can be led this far, as a share of the time, no ring can
+be followed in this recording."""
+
 FAR_BEHIND = 15.0
 """Near the ring's phase, other laws of one thing that promise to stay this far behind are not led
 there."""
@@ -87,6 +91,8 @@ def followed_search(
 
     for one in hypotheses:
         lead(one.point.nuisance, one.state, near=near)
+    if led and min(led, key=_farthest).reached[0] < EARLY:
+        return None
     least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
     for one in _kin(refiner, led, others):
         if not near or one.log_score > least:

@@ -41,8 +41,12 @@ NOISE, DOUBTFUL = 1.06, 0.5
 how much more leaves it even whether what explains best is what is there."""
 
 MOST_DOUBT = 0.6
-"""Where no simulation can be led to the ring's phase, or is far from the noise when it is: what
-explains the lines best is then more often wrong than right."""
+"""What is far from the noise though it was led to the ring's phase is more often wrong than right."""
+
+DOUBT_A_CAUSE = 0.2
+"""Where no simulation can be led to the ring's phase, lines alone speak: for each cause that they
+need, this is the doubt. One cause that explains all lines is mostly the right one; three are what a
+missing law is made up of."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +133,7 @@ def judge(
 def doubt_of(fitted: Fitted, *, lost: bool) -> float:
     """The probability that what explains best is not what is there, by what it leaves."""
     if lost:
-        return MOST_DOUBT
+        return min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
     if np.isnan(fitted.left):
         return 0.0
     beyond = max(fitted.left - NOISE, 0.0) / DOUBTFUL
