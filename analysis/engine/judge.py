@@ -41,7 +41,7 @@ NOISE, DOUBTFUL = 1.06, 0.5
 how much more leaves it even whether what explains best is what is there."""
 
 MOST_DOUBT = 0.6
-"""What is far from the noise though it was led to the ring's phase is more often wrong than right."""
+"""What was led to the ring's phase and is far from the noise is more often wrong than right."""
 
 DOUBT_A_CAUSE = 0.2
 """Where no simulation can be led to the ring's phase, lines alone speak: for each cause that they
