@@ -25,6 +25,9 @@ a way that nothing missed."""
 MORE = 2
 """Beside the best that was led to the phase, so many are tried with one cause more."""
 
+EFFORT = 4000.0
+"""Whole simulations, after which nothing new is tried."""
+
 EARLY = 0.15
 """Where none of the first that were tried can be led this far, as a share of the time, no ring can
 be followed in this recording."""
@@ -95,11 +98,11 @@ def followed_search(
         return None
     least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
     for one in _kin(refiner, led, others):
-        if not near or one.log_score > least:
+        if (not near or one.log_score > least) and _spent(led) < EFFORT:
             lead(one.point.nuisance, one.state, near=near)
     for _ in range(most_causes - 1):
         best = min(led, key=_farthest, default=nothing)
-        if best.left > LOST or len(best.names) >= most_causes:
+        if best.left > LOST or len(best.names) >= most_causes or _spent(led) > EFFORT:
             break
         tried = {one.names for one in led}
         found = faint(system, best, others_beside(refiner, best))
@@ -156,6 +159,11 @@ def _misfit(samples: Samples, nuisance: Array, state: State) -> float:
 def _cost(led: Followed) -> float:
     """Squared misfit of all samples and of the parameters to their prior."""
     return led.misfit + float(led.nuisance @ led.nuisance)
+
+
+def _spent(led: Sequence[Followed]) -> float:
+    """Whole simulations that following took."""
+    return sum(one.effort for one in led)
 
 
 def _farthest(led: Followed) -> tuple[float, float]:

@@ -23,6 +23,9 @@ REACH, NARROWEST = 4.0, 0.004
 """Where more than this is left of a sample in the next window, as where a motion begins, a nearer
 one is led through first, down to this share of the time."""
 
+EFFORT = 1500.0
+"""Whole simulations, after which no further step is taken: some fifteen times all differences."""
+
 STRAIGHT = 0.8
 """A step that brings less than this of what it promises has left where differences hold: what
 everything does is simulated anew."""
@@ -92,6 +95,8 @@ class Followed:
         shows where it throws the ring out of phase; before that, parameters make up for it.
     misfit
         Squared misfit of all samples.
+    effort
+        Whole simulations that it took.
     costs
         Share of the time at the end of each window -> squared misfit up to there, with that of the
         parameters to their prior.
@@ -103,6 +108,7 @@ class Followed:
     left: float = np.inf
     telling: float = 1.0
     misfit: float = np.inf
+    effort: float = 0.0
     costs: Mapping[float, float] = field(default_factory=dict)
 
     @property
@@ -191,7 +197,9 @@ def follow_ring(
         reached = windows.pop()
         best = (ahead or {}).get(share, np.inf)
         for _ in range(STEPS if share < 1.0 else LAST_STEPS):
-            if not way.step(share, lost=LOST if costs or near else np.inf, best=best):
+            if samples.effort > EFFORT or not way.step(
+                share, lost=LOST if costs or near else np.inf, best=best
+            ):
                 break
         if share not in WINDOWS:
             continue
@@ -209,6 +217,7 @@ def follow_ring(
         left=left,
         telling=float(telling),
         misfit=float(way.here @ way.here),
+        effort=samples.effort,
         costs=costs,
     )
 

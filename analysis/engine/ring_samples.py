@@ -33,6 +33,8 @@ class Samples:
         self, system: System, *, held: str = "", everything: bool = False, share: float = 1.0
     ) -> None:
         self.system = system
+        self.effort = 0.0
+        """Simulations asked for so far, each as the share of the time that it took."""
         self._mask = [
             seen(one, held=held, everything=everything, share=share) for one in system.bundles
         ]
@@ -50,6 +52,7 @@ class Samples:
         """
         upto, after = self._upto(share), self.shares > share
         asked = [replace(one, upto=upto) for one in points]
+        self.effort += upto * len(asked)
         found: list[Array] = []
         for first in range(0, len(points), BATCH):
             found += self.system.simulate(asked[first : first + BATCH], self._residual)

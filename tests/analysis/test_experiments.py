@@ -17,10 +17,10 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.telling import Rival, Telling, information_bits
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.cause import Cause
+from analysis.engine.cause import Rival as Other
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.fitted import Fitted
 from analysis.engine.judge import Judgement
-from analysis.engine.judge import Rival as Other
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Screen
