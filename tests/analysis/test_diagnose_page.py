@@ -138,7 +138,7 @@ def test_light_and_dark_phone_and_screen_have_figures_of_their_own(
                 "return [...document.images].map(i => [i.alt, i.naturalWidth, i.complete,"
                 " i.getBoundingClientRect().width, i.currentSrc.slice(-200)])"
             )
-            assert len(pictures_) == 7
+            assert len(pictures_) == 8
             for alt, natural, complete, wide, _ in pictures_:
                 assert len(alt) > 30
                 assert complete
