@@ -245,11 +245,10 @@ def _cut(recording: Recording, upto: float) -> RampedSine | None:
     """The motion with as much of the time after its start as samples are asked for; None: all."""
     if upto >= 1.0:
         return None
-    first_s = min(float(one.t_s[0]) for one in recording.bundles)
     last_s = max(float(one.t_s[0] + upto * (one.t_s[-1] - one.t_s[0])) for one in recording.bundles)
     whole = RampedSine.from_excitation(recording.excitation)
     # Whole tenths: recordings that are cut alike share their times.
-    until_s = np.ceil(10.0 * (max(last_s, first_s) - recording.shift_s + LATE_S)) / 10.0
+    until_s = np.ceil(10.0 * (last_s - recording.shift_s + LATE_S)) / 10.0
     return replace(whole, duration_s=float(until_s)) if until_s < whole.duration_s else None
 
 

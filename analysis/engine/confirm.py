@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.fitted import Fitted
-from analysis.engine.ring_fit import Followed, follow_ring
+from analysis.engine.followed import Followed
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import Search
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Ring, System

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.engine.evidence import Problem, directions
+from analysis.engine.followed import Followed
 from analysis.engine.lens import Labels
-from analysis.engine.ring_fit import Followed
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
 from analysis.engine.system import Array, Candidate, Point, Setting, System

@@ -7,9 +7,9 @@ import numpy as np
 
 from analysis.engine.faint import Faint
 from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import Followed
 from analysis.engine.screen import Scored, Screen, grouped, groups
 from analysis.engine.state import State
 from analysis.engine.system import Array, Candidate

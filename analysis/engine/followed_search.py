@@ -9,9 +9,10 @@ from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
 from analysis.engine.faint import FORMS, faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import BEHIND, FAINT, LOST, Followed, follow_ring
+from analysis.engine.ring_fit import BEHIND, FAINT, LOST, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened

@@ -6,15 +6,16 @@ longer stretches, as far as it can be followed. Where it cannot be followed furt
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.evidence import bounded
+from analysis.engine.followed import FINE, Followed
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point, System
+from analysis.engine.system import Array, System
 
 WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
@@ -52,11 +53,6 @@ WORTH_ON_THE_WAY = 0.003
 CATCHES_UP = 0.1
 """Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
 
-STEP, FINE = 5e-4, 0.025
-"""Of the difference that tells what a parameter does, in sigmas, and of what is on, as a share of
-its step. Longer ones turn the phase: at 40 times this, what differences are off by is larger than
-what the weakest directions do, and steps along them lead nowhere."""
-
 LOOSE = 0.02
 """What is on is held where it is as if its number were known to its step over this."""
 
@@ -74,89 +70,6 @@ GOES_ON = 6.0
 
 BEHIND = 600.0
 """What stays this far behind another, in squared misfit, is not followed further."""
-
-
-@dataclass(frozen=True)
-class Followed:
-    """Where following the ring has led to.
-
-    Attributes
-    ----------
-    nuisance
-        In sigmas, shape (p,).
-    state
-        The free numbers of what is on; None: nothing is.
-    share
-        Of the time: the shortest over which more than `FAINT` is left, or 1.
-    left
-        Squared misfit of a sample over that time, on average.
-    telling
-        Of the time: the shortest over which more than `TELLING` is left, or 1. What is left out
-        shows where it throws the ring out of phase; before that, parameters make up for it.
-    misfit
-        Squared misfit of all samples.
-    effort
-        Whole simulations that it took.
-    costs
-        Share of the time at the end of each window -> squared misfit up to there, with that of the
-        parameters to their prior.
-    """
-
-    nuisance: Array
-    state: State | None
-    share: float = 1.0
-    left: float = np.inf
-    telling: float = 1.0
-    misfit: float = np.inf
-    effort: float = 0.0
-    costs: Mapping[float, float] = field(default_factory=dict)
-
-    @property
-    def point(self) -> Point:
-        """What is to be simulated, ring and all."""
-        if self.state is None:
-            return Point(self.nuisance, ring="as_is")
-        return replace(self.state.point(self.nuisance), ring="as_is")
-
-    @property
-    def reached(self) -> tuple[float, float]:
-        """The share of the time it was led to, and its cost there: the farther, then the less."""
-        share = max(self.costs, default=0.0)
-        return share, self.costs.get(share, np.inf)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the candidates that are on."""
-        return () if self.state is None else self.state.hypothesis.names
-
-    @property
-    def numbers(self) -> Array:
-        """Nuisances and the free numbers of the state, shape (numbers,)."""
-        if self.state is None:
-            return self.nuisance
-        return np.concatenate([self.nuisance, self.state.values[list(self.state.free)]])
-
-    def moved(self, change: Array, share: float) -> "Followed":
-        """A share of a step further."""
-        count = len(self.nuisance)
-        state = self.state
-        if state is not None:
-            state = state.moved(change[count:], share)
-        return Followed(self.nuisance + share * change[:count], state)
-
-    def neighbours(self) -> tuple[list[Point], Array]:
-        """A point for each free number, moved a little, and by how much, shape (numbers,)."""
-        points, steps = [], []
-        for i in range(len(self.nuisance)):
-            nuisance = self.nuisance.copy()
-            nuisance[i] += STEP
-            points.append(replace(self, nuisance=nuisance).point)
-            steps.append(STEP)
-        if self.state is not None:
-            for k in range(len(self.state.free)):
-                points.append(replace(self, state=self.state.bumped(k, FINE)).point)
-                steps.append(self.state.signed_step(k, FINE))
-        return points, np.array(steps)
 
 
 def follow_ring(
