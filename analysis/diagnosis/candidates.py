@@ -59,7 +59,7 @@ POLICIES: dict[str, Policy] = {
     "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),
     "camera_axis": Policy(steps={"axis_roll_deg": 0.5, "axis_pitch_deg": 0.5, "axis_yaw_deg": 0.5}),
     "camera_latency": Policy(steps={"latency_s": 0.003}),
-    "camera_exposure": Policy(form_share=LINEAR),
+    "camera_exposure": Policy(steps={"exposure_s": 0.0625}, form_share=LINEAR),
     "camera_rolling_shutter": Policy(form_share=LINEAR),
     "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
     "cell_drift": Policy(form_share=LINEAR),
@@ -90,6 +90,9 @@ SHARPEST = 3.0
 """Presliding this many times shorter than it is screened at is Coulomb's law."""
 
 SATURATION_STEP_N = 0.3
+
+GROWING = ("camera_exposure",)
+"""What it does goes with the square of its magnitude."""
 
 
 def candidates(
@@ -153,6 +156,7 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
         combinations=wholes,
         chosen_terms=4 if effect.name == "geometry" else 0,
         family=FAMILIES.get(effect.name, ""),
+        grows=effect.name in GROWING,
     )
 
 
@@ -199,7 +203,8 @@ def _saturation(effect: Effect) -> Candidate:
         Term(f"clipped_n@{cable}", "clipped_n", "N", str(cable), 0.0, 30.0, SATURATION_STEP_N)
         for cable in CABLE_NUMBERS
     )
-    return Candidate(effect.name, effect.title, effect.acts.side, terms, (), 0.1, shareable=False)
+    return Candidate(effect.name, effect.title, effect.acts.side, terms, (), 0.1,
+                     shareable=False, grows=True)  # fmt: skip
 
 
 def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]], frame_hz: float) -> Candidate:

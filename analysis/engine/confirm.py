@@ -58,24 +58,28 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     start = search.calibrated.at
     if search.faint:
         start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
-    before = _errors(search.system, start, None, held)
+    before = _errors(search.system, start, None, held, near=search.faint)
     after = before
     if chosen.hypothesis.parts:
         again = chosen
         if not search.faint:
             again = search.refiner.settle(search.refiner.again(chosen, _used(search, held)))
-        after = _errors(search.system, again.point.nuisance, again.state, held)
+        nuisance = again.point.nuisance
+        after = _errors(search.system, nuisance, again.state, held, near=search.faint)
     return Confirmation(before, after, held)
 
 
 def _errors(
-    system: System, nuisance: Array, state: State | None, held: str
+    system: System, nuisance: Array, state: State | None, held: str, *, near: bool
 ) -> dict[str, dict[str, float]]:
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
     start = Followed(nuisance, state)
     tried = [replace(start.point, ring=ring) for ring in RINGS]
     if any(bundle.tones_hz for bundle in system.bundles):
-        tried.append(follow_ring(system, nuisance, state, held=held).point)
+        led = follow_ring(system, nuisance, state, held=held, near=near)
+        if near and led.share < 1.0:
+            led = follow_ring(system, nuisance, state, held=held)
+        tried.append(led.point)
     found = (sample_errors(system, one, held) for one in tried)
     return min(found, key=lambda errors: sum(one**2 for one in errors["used"].values()))
 

@@ -109,7 +109,7 @@ def diagnose(
         As `search` has them.
     """
     if stop_after in ("align", "locate"):
-        seen = look(system, tell, terms=False)
+        seen = look(system, tell)
         found = locate(system.bundles, seen.calibrated.problem, seen.calibrated.problem.residual)
         return Diagnosis(system, seen.calibrated, found, None, None, None, None)
     searched = search(system, tell, anew=anew, most_causes=most_causes)

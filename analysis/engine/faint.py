@@ -90,14 +90,15 @@ def faint(
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
     on = followed.point.effects
     for candidate in candidates:
+        small = 1.0 if candidate.grows else SMALL
         for v, shapes in enumerate(candidate.variants()):
             for k, term in enumerate(candidate.terms):
                 if (candidate.name, term.name) not in same:
-                    setting = Setting({term.name: SMALL * term.step}, shapes)
+                    setting = Setting({term.name: small * term.step}, shapes)
                     effects = {**on, candidate.name: setting}
                     points.append(Point(followed.nuisance, effects, "as_is"))
                     places.append((candidate.name, v, k))
-                    scales.append(SMALL * term.step)
+                    scales.append(small * term.step)
     rows: list[Array] = []
     for first in range(0, len(points), BATCH):
         rows += [here - one for one in samples.residuals(points[first : first + BATCH])]

@@ -29,9 +29,10 @@ class Followed:
     left
         Squared misfit of a sample over that time, on average.
     telling
-        Of the time: the shortest over which more than `TELLING` of `ring_fit` is left, or 1. What
-        is left out shows where it throws the ring out of phase; before that, parameters make up
-        for it.
+        Of the time: what is left out is looked for up to there.
+    about
+        Where parameters had not yet begun to make up for what is left out; its `telling` is where
+        they have: there is told best what that is. None: they never did, or nothing is left.
     misfit
         Squared misfit of all samples.
     effort
@@ -46,6 +47,7 @@ class Followed:
     share: float = 1.0
     left: float = np.inf
     telling: float = 1.0
+    about: "Followed | None" = None
     misfit: float = np.inf
     effort: float = 0.0
     costs: Mapping[float, float] = field(default_factory=dict)

@@ -11,20 +11,25 @@ from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.places import placed, places_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import BEHIND, FAINT, LOST, follow_ring
+from analysis.engine.ring_fit import BEHIND, FAINT, follow_ring
 from analysis.engine.ring_samples import Samples
+from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
 
-RESTARTS = 3
+RESTARTS = 1
 """Nothing is led to the phase once more from where so many hypotheses have come: one may have found
 a way that nothing missed."""
 
+ENOUGH = 1.1
+"""What is led to a squared misfit of a sample below this explains: nothing else is looked for."""
+
 MORE = 2
-"""Beside the best that was led to the phase, so many are tried with one cause more."""
+"""Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
 
 EFFORT = 4000.0
 """Whole simulations, after which nothing new is tried."""
@@ -34,33 +39,19 @@ EARLY = 0.15
 be followed in this recording."""
 
 FAR_BEHIND = 15.0
-"""Near the ring's phase, other laws of one thing that promise to stay this far behind are not led
-there."""
+"""What promises to stay this far behind is not led to the phase."""
 
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
 
 
-def followed_search(
-    refiner: Refiner,
-    hypotheses: Sequence[Fitted],
-    others: Sequence[Fitted],
-    nothing: Followed,
-    most_causes: int,
-    progress: Progress | None = None,
-    *,
-    near: bool = False,
-) -> list[Fitted] | None:
+class FollowedSearch:
     """Hypotheses led to the ring's phase, each for itself, and with one cause more where it asks.
 
     Parameters
     ----------
     refiner
         Made the hypotheses.
-    hypotheses
-        Those to try, the null not among them.
-    others
-        Single causes, the best first: laws of the same things as what comes far are tried as well.
     nothing
         How far parameters alone lead.
     most_causes
@@ -68,58 +59,149 @@ def followed_search(
     progress
         Told of it.
     near
-        All of them are near the ring's phase, and their scores tell what each can come to.
-
-    Returns
-    -------
-    list of Fitted or None
-        Their scores are those of all samples, the best first; None where none comes to the noise.
+        All hypotheses are near the ring's phase, and their scores tell what each can come to.
     """
-    system = refiner.system
-    samples = Samples(system, everything=True)
-    count = len(samples.shares)
-    led: list[Followed] = []
 
-    def lead(nuisance: Array, state: State, *, near: bool) -> None:
-        ahead = min(led, key=_farthest).costs if led else None
+    def __init__(
+        self,
+        refiner: Refiner,
+        nothing: Followed,
+        most_causes: int,
+        progress: Progress | None = None,
+        *,
+        near: bool = False,
+    ) -> None:
+        self._refiner = refiner
+        self._system = refiner.system
+        self._nothing = nothing
+        self._most_causes = most_causes
+        self._progress = progress
+        self._near = near
+        self._samples = Samples(self._system, everything=True)
+        self._led: list[Followed] = []
+        self._effort = 0.0
+
+    def follow(self, hypotheses: Sequence[Fitted], others: Sequence[Fitted]) -> None:
+        """Lead hypotheses to the ring's phase.
+
+        Parameters
+        ----------
+        hypotheses
+            Those to try, the null not among them; what was led before is not led again.
+        others
+            Single causes, the best first: laws of the same things as what comes far are tried too.
+        """
+        known = {one.names for one in self._led}
+        for one in hypotheses:
+            if one.hypothesis.names not in known:
+                self._lead(one.point.nuisance, one.state, near=self._near)
+        if not self._led or self._best.reached[0] < EARLY:
+            return
+        least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
+        for one in self._kin(others):
+            if (not self._near or one.log_score > least) and self._effort < EFFORT:
+                # Where one law was led to the end, the parameters are those of its kind as well.
+                from_end = not self._near and self._best.share == 1.0
+                nuisance = self._best.nuisance if from_end else one.point.nuisance
+                self._lead(nuisance, one.state, near=self._near)
+        for _ in range(self._most_causes - 1):
+            if not self._one_more():
+                break
+
+    @property
+    def explains(self) -> bool:
+        """Whether something was led to the noise."""
+        count = len(self._samples.shares)
+        return bool(self._led) and self._best.misfit < ENOUGH * count
+
+    def fitted(self) -> list[Fitted] | None:
+        """Hypotheses with the scores of all samples, the best first; None: none comes near."""
+        count = len(self._samples.shares)
+        nulls = [self._nothing]
+        for way in sorted(self._led, key=_farthest)[:RESTARTS]:
+            if way.reached[0] == 1.0:
+                start = _parameters_of(self._system, way)
+                nulls.append(follow_ring(self._system, start, everything=True, near=True))
+        if min(one.misfit for one in (*self._led, *nulls)) > FAINT * count:
+            return None
+        return _weighed(self._refiner, self._led, min(nulls, key=_cost), count)
+
+    @property
+    def _best(self) -> Followed:
+        return min(self._led, key=_farthest, default=self._nothing)
+
+    def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
+        system, ahead = self._system, self._best.costs if self._led else None
         found = follow_ring(system, nuisance, state, everything=True, ahead=ahead, near=near)
+        self._effort += found.effort
         if near and found.share < 1.0:
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
+            self._effort += found.effort
         if found.share < 1.0:
-            sharper = sharpened(state, lambda there: -_misfit(samples, found.nuisance, there))
+            sharper = sharpened(state, lambda there: -_misfit(self._samples, found.nuisance, there))
             if sharper is not state:
                 found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
-        led.append(found)
-        if progress is not None:
-            progress(len(led), max(len(hypotheses), len(led)))
+                self._effort += found.effort
+        self._led.append(found)
+        if self._progress is not None:
+            self._progress(len(self._led), len(self._led))
 
-    for one in hypotheses:
-        lead(one.point.nuisance, one.state, near=near)
-    if led and min(led, key=_farthest).reached[0] < EARLY:
-        return None
-    least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
-    for one in _kin(refiner, led, others):
-        if (not near or one.log_score > least) and _spent(led) < EFFORT:
-            lead(one.point.nuisance, one.state, near=near)
-    for _ in range(most_causes - 1):
-        best = min(led, key=_farthest, default=nothing)
-        if best.left > LOST or len(best.names) >= most_causes or _spent(led) > EFFORT:
-            break
-        tried = {one.names for one in led}
-        found = faint(system, best, others_beside(refiner, best))
-        for scored in one_more(found, refiner)[:MORE]:
-            if scored.hypothesis.names not in tried:
-                state = State.of(scored, refiner.candidates)
-                lead(nuisances_of(found, scored), state, near=best.reached[0] == 1.0)
-        if min(led, key=_farthest, default=nothing) is best:
-            break
-    nulls = [nothing]
-    for way in sorted(led, key=_farthest)[: RESTARTS if nothing.left < LOST else 0]:
-        start = _parameters_of(system, way)
-        nulls.append(follow_ring(system, start, everything=True, near=True))
-    if min(one.misfit for one in (*led, *nulls)) > FAINT * count:
-        return None
-    return _weighed(refiner, led, min(nulls, key=_cost), count)
+    def _kin(self, others: Sequence[Fitted]) -> list[Fitted]:
+        """Other laws of the things that came as far as the best."""
+        family = {name: one.family for name, one in self._refiner.candidates.items()}
+        share, cost = self._best.reached
+        far = [
+            one for one in self._led if one.reached[0] == share and one.reached[1] < cost + BEHIND
+        ]
+        known = {one.names for one in self._led}
+        kin = {family[name] for one in far for name in one.names} - {""}
+        found: dict[tuple[str, ...], Fitted] = {}
+        for one in others:
+            names = one.hypothesis.names
+            if names not in known and family[names[0]] in kin:
+                found.setdefault(names, one)
+        return list(found.values())
+
+    def _one_more(self) -> bool:
+        """Try one cause more beside the best; whether that leads farther."""
+        best, refiner = self._best, self._refiner
+        if len(best.names) >= self._most_causes or self._effort > EFFORT:
+            return False
+        found = faint(self._system, best.about or best, others_beside(refiner, best))
+        family = {name: one.family or name for name, one in refiner.candidates.items()}
+        promised: dict[str, list[Scored]] = {}
+        for scored in one_more(found, refiner):
+            (added,) = set(scored.hypothesis.names) - set(best.names)
+            promised.setdefault(family[added], []).append(scored)
+
+        def lead(scored: Scored) -> Followed:
+            state = State.of(scored, refiner.candidates)
+            self._lead(nuisances_of(found, scored), state, near=best.share == 1.0)
+            return self._led[-1]
+
+        known = {one.names for one in self._led}
+        tried: dict[str, Followed] = {}
+        for kind, laws in list(promised.items())[:MORE]:
+            promising = laws[0].log_score > next(iter(promised.values()))[0].log_score - FAR_BEHIND
+            if promising and laws[0].hypothesis.names not in known:
+                tried[kind] = lead(laws[0])
+        if self._best is best:
+            return False
+        # One law was led that far; which of its kind it is, is another question.
+        kind = min(tried, key=lambda one: _farthest(tried[one]))
+        for scored in promised[kind][1:]:
+            if scored.hypothesis.names not in known and self._effort < EFFORT:
+                self._lead_like(tried[kind], scored, best.names)
+        return True
+
+    def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
+        """Lead another law in the same places, from where one of its kind has come to."""
+        state = State.of(scored, self._refiner.candidates)
+        if law.state is not None:
+            (name,) = set(scored.hypothesis.names) - set(known)
+            (like,) = set(law.names) - set(known)
+            state = placed(state, name, places_of(law.state, like))
+        self._lead(law.nuisance, state, near=False)
 
 
 def _weighed(
@@ -162,32 +244,10 @@ def _cost(led: Followed) -> float:
     return led.misfit + float(led.nuisance @ led.nuisance)
 
 
-def _spent(led: Sequence[Followed]) -> float:
-    """Whole simulations that following took."""
-    return sum(one.effort for one in led)
-
-
 def _farthest(led: Followed) -> tuple[float, float]:
     """Least for what was led farthest, and there is closest."""
     share, cost = led.reached
     return -share, cost
-
-
-def _kin(refiner: Refiner, led: Sequence[Followed], others: Sequence[Fitted]) -> list[Fitted]:
-    """Other laws of the things that came as far as the best."""
-    if not led:
-        return []
-    family = {name: one.family for name, one in refiner.candidates.items()}
-    share, cost = min(led, key=_farthest).reached
-    far = [one for one in led if one.reached[0] == share and one.reached[1] < cost + BEHIND]
-    known = {one.names for one in led}
-    kin = {family[name] for one in far for name in one.names} - {""}
-    found: dict[tuple[str, ...], Fitted] = {}
-    for one in others:
-        names = one.hypothesis.names
-        if names not in known and family[names[0]] in kin:
-            found.setdefault(names, one)
-    return list(found.values())
 
 
 def _parameters_of(system: System, led: Followed) -> Array:

@@ -7,6 +7,7 @@ longer stretches, as far as it can be followed. Where it cannot be followed furt
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,19 +25,23 @@ REACH, NARROWEST = 4.0, 0.004
 """Where more than this is left of a sample in the next window, as where a motion begins, a nearer
 one is led through first, down to this share of the time."""
 
-EFFORT = 1500.0
-"""Whole simulations, after which no further step is taken: some fifteen times all differences."""
+EFFORT = 1000.0
+"""Whole simulations, after which no further step is taken: some ten times all differences."""
 
 STRAIGHT = 0.8
 """A step that brings less than this of what it promises has left where differences hold: what
 everything does is simulated anew."""
 
-STEPS, LAST_STEPS = 5, 12
-"""So many steps are taken in each window, at most; in the last, over the whole of the time, until
-none promises anything: what is left there is compared to a few units in tens of thousands."""
+STEPS = 15
+"""So many steps are taken in each window, at most: each is led through until no step promises
+anything. What is left behind in a short window is a wrong turn in the next."""
 
 TELLING = 10.0
 """Where this is left of the squared misfit of a sample, the ring has just been lost."""
+
+STRAIN, LEAVES = 80.0, 4.0
+"""Parameters make up for something left out where they cost more than this, squared and in sigmas,
+or where more is left than noise, by so many of its standard deviations."""
 
 STRETCHES = 200
 """How closely it is told up to where a ring could be followed."""
@@ -56,8 +61,14 @@ CATCHES_UP = 0.1
 LOOSE = 0.02
 """What is on is held where it is as if its number were known to its step over this."""
 
-SHORTER, SHORTEST = 0.4, 3
-"""A step that went too far is taken again, this much of it, and so often."""
+HALFWAY = 0.5
+"""Of a step that brings less of what it promises, shorter ones are tried:"""
+
+DAMPINGS = (10.0, 100.0, 1e3, 1e4, 1e6, 1e8)
+"""as if everything were known so much better where it is (Levenberg 1944, Marquardt 1963)."""
+
+LONGER, LONGEST = 2.0, 4.0
+"""One that brings more than it promises is taken so much farther, up to that many times."""
 
 FAINT = 1.5
 """A ring is followed as far as no more than this is left of the squared misfit of a sample."""
@@ -102,6 +113,8 @@ def follow_ring(
     costs: dict[float, float] = {}
     windows = list(reversed(WINDOWS[-1:] if near else WINDOWS))
     reached = 0.0
+    came: Followed | None = None
+    about: Followed | None = None
     while windows:
         share = windows[-1]
         if reached and way.left(share) > REACH and share - reached > NARROWEST:
@@ -109,30 +122,41 @@ def follow_ring(
             continue
         reached = windows.pop()
         best = (ahead or {}).get(share, np.inf)
-        for _ in range(STEPS if share < 1.0 else LAST_STEPS):
+        for _ in range(STEPS):
             if samples.effort > EFFORT or not way.step(
                 share, lost=LOST if costs or near else np.inf, best=best
             ):
                 break
-        if share not in WINDOWS:
-            continue
-        costs[share] = way.cost(share)
-        behind = costs[share] > best + BEHIND
+        if about is None and came is not None and way.strained(share):
+            about = replace(came, telling=share)
+        came = way.at
+        if share in WINDOWS:
+            costs[share] = way.cost(share)
+        behind = way.cost(share) > best + BEHIND
         if way.left(share) > (FAINT if state is None else GOES_ON) or behind:
             break
     way.look(1.0)
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
-    left, share = next((one for one in lefts if one[0] > FAINT), lefts[-1])
-    _, telling = next((one for one in lefts if one[0] > TELLING), lefts[-1])
+    lost = (one for one in lefts if one[0] > max(FAINT, way.allowed(one[1])))
+    left, share = next(lost, lefts[-1])
     return replace(
         way.at,
         share=float(share),
         left=left,
-        telling=float(telling),
+        telling=float(next((one[1] for one in lefts if one[0] > TELLING), lefts[-1][1])),
+        about=about if share < 1.0 or left > FAINT else None,
         misfit=float(way.here @ way.here),
         effort=samples.effort,
         costs=costs,
     )
+
+
+class _Step(NamedTuple):
+    """Where a step leads, what is left there, and by how much the cost falls."""
+
+    there: Followed
+    residual: Array
+    fell: float
 
 
 class _Way:
@@ -164,6 +188,16 @@ class _Way:
         inside = self.here[self._samples.shares <= share]
         return float(inside @ inside + self.at.nuisance @ self.at.nuisance)
 
+    def strained(self, share: float) -> bool:
+        """Whether parameters make up for something that is left out."""
+        strain = float(self.at.nuisance @ self.at.nuisance)
+        return strain > STRAIN or self.left(share) > self.allowed(share)
+
+    def allowed(self, share: float) -> float:
+        """What noise may leave of a sample up to a share of the time."""
+        count = int((self._samples.shares <= share).sum())
+        return 1.0 + LEAVES * float(np.sqrt(2.0 / max(count, 1)))
+
     def step(self, share: float, lost: float = LOST, best: float = np.inf) -> bool:
         """One Gauss-Newton step over the samples up to a share of the time, if there is one.
 
@@ -191,8 +225,7 @@ class _Way:
             self._columns = (self.here - rows) / self._steps[:, None]
         if self._step(inside, best):
             return True
-        # On the way, near enough is near enough.
-        if fresh or (share < 1.0 and self.left(share) < FAINT):
+        if fresh:
             return False
         self._columns = None
         return self.step(share, lost, best)
@@ -201,31 +234,49 @@ class _Way:
         assert self._columns is not None
         at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
         # What a short window does not tell of a law stays about where it is (Levenberg 1944).
-        held = (LOOSE * FINE / self._steps[len(at) :]) ** 2
-        matrix = columns @ columns.T + np.diag(np.concatenate([np.ones(len(at)), held]))
+        known = np.ones(len(self._steps))
+        known[len(at) :] = (LOOSE * FINE / self._steps[len(at) :]) ** 2
+        matrix = columns @ columns.T + np.diag(known)
         right = columns @ here
         right[: len(at)] -= at
         lows, highs = np.full(len(right), -np.inf), np.full(len(right), np.inf)
         if self.at.state is not None:
             lows[len(at) :], highs[len(at) :] = self.at.state.bounds()
         target = bounded(matrix, right, lows, highs)
-        before = float(here @ here + at @ at)
+        before, promised = float(here @ here + at @ at), float(right @ target)
         worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
-        if float(right @ target) < max(worth, CATCHES_UP * (before - best)):
+        if promised < max(worth, CATCHES_UP * (before - best)):
             return False
-        share = 1.0
-        for _ in range(SHORTEST):
-            there = self.at.moved(target, share)
-            (found,) = self._samples.residuals([there.point], self._seen)
-            left = found[inside]
-            fell = before - float(left @ left + there.nuisance @ there.nuisance)
-            if fell > 0.0:
-                self._learn(there, found)
-                if fell < STRAIGHT * float(right @ target):
-                    self._columns = None
-                return True
-            share *= SHORTER
-        return False
+        found = self._along(target, inside, before)
+        if found.fell < HALFWAY * promised:
+            # Differences hold over less than that: shorter, and least along what tells least.
+            for damping in DAMPINGS:
+                shorter = bounded(matrix + damping * np.diag(known), right, lows, highs)
+                nearer = self._along(shorter, inside, before)
+                if found.fell > max(nearer.fell, 0.0):
+                    break
+                found = max(found, nearer, key=lambda one: one.fell)
+        # Along a valley that turns, differences promise too little: a step is too short.
+        times = LONGER
+        while times <= LONGEST and found.fell > promised / STRAIGHT:
+            farther = self._along(times * target, inside, before)
+            if farther.fell < found.fell:
+                break
+            found, times = farther, times * LONGER
+        if found.fell <= 0.0:
+            return False
+        self._learn(found.there, found.residual)
+        if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
+            self._columns = None
+        return True
+
+    def _along(self, change: Array, inside: NDArray[np.bool_], before: float) -> "_Step":
+        """What a step comes to."""
+        there = self.at.moved(change, 1.0)
+        (residual,) = self._samples.residuals([there.point], self._seen)
+        left = residual[inside]
+        now = float(left @ left + there.nuisance @ there.nuisance)
+        return _Step(there, residual, before - now)
 
     def _learn(self, there: Followed, found: Array) -> None:
         """Go there, and let what was found correct the differences (Broyden 1965)."""

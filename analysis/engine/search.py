@@ -9,10 +9,10 @@ from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, ring_promises
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
-from analysis.engine.followed_search import followed_search
+from analysis.engine.followed_search import FAR_BEHIND, FollowedSearch
 from analysis.engine.lens import Lens
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT, LOST, follow_ring
+from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.system import Array, System
@@ -38,8 +38,6 @@ class Search:
         What was looked at; data are its features, shape (f,).
     calibrated
         The system at its likeliest parameters.
-    terms
-        What every candidate would do there.
     screened
         Single candidates to first order, the best first.
     null
@@ -56,7 +54,6 @@ class Search:
     lens: Lens
     data: Array
     calibrated: Calibrated
-    terms: Columns
     screened: tuple[Scored, ...]
     null: Fitted
     fitted: tuple[Fitted, ...]
@@ -70,16 +67,15 @@ class Search:
 
 
 class Look(NamedTuple):
-    """The system at its likeliest parameters, and what every candidate would do to it."""
+    """The system at its likeliest parameters."""
 
     lens: Lens
     data: Array
     calibrated: Calibrated
-    terms: Columns
 
 
-def look(system: System, tell: Tell | None = None, *, terms: bool = True) -> Look:
-    """Fit the parameters, and, where asked for, simulate what every candidate would do."""
+def look(system: System, tell: Tell | None = None) -> Look:
+    """Fit the parameters."""
     lens = Lens(list(system.bundles))
     data = lens.of_data()
 
@@ -87,15 +83,7 @@ def look(system: System, tell: Tell | None = None, *, terms: bool = True) -> Loo
         if tell is not None:
             tell("fitting parameters", done, total)
 
-    def causes(done: int, total: int) -> None:
-        if tell is not None:
-            tell("simulating what each cause would do", done, total)
-
-    found = calibrate(system, lens, data, parameters)
-    columns: Columns = {}
-    if terms:
-        columns = term_columns(system, lens, system.candidates, found.at, found.columns, causes)
-    return Look(lens, data, found, columns)
+    return Look(lens, data, calibrate(system, lens, data, parameters))
 
 
 def search(
@@ -115,9 +103,9 @@ def search(
     most_causes
         Of a hypothesis.
     """
-    lens, data, calibrated, terms = look(system, tell)
+    lens, data, calibrated = look(system, tell)
     refiner = Refiner(system, lens, data, calibrated, anew=anew)
-    null = refiner.fit(Screen(calibrated.problem, refiner.candidates, terms).null())
+    null = refiner.fit(Screen(calibrated.problem, refiner.candidates, {}).null())
 
     def following(done: int, total: int) -> None:
         if tell is not None:
@@ -125,36 +113,46 @@ def search(
 
     def found(screened: Sequence[Scored], fitted: Sequence[Fitted], *, faint: bool) -> Search:
         return Search(
-            system, lens, data, calibrated, terms, tuple(screened), null, tuple(fitted), refiner,
+            system, lens, data, calibrated, tuple(screened), null, tuple(fitted), refiner,
             faint=faint,
         )  # fmt: skip
 
-    nothing = follow_ring(system, calibrated.at, everything=True) if rings(system) else None
-    promises: list[Fitted] = []
-    if nothing is not None and nothing.left < LOST:
-        chosen = [one for one in system.candidates if not one.fixed]
-        about = faint(system, nothing, chosen, following)
-        if nothing.left < FAINT:
-            screened, faintly = faint_search(about, refiner, refiner.candidates)
-            if not _promising(faintly):
-                return found(screened, faintly, faint=True)
-            single = [one for one in faintly if len(one.hypothesis.parts) == 1]
-            tried = _to_follow(null, single, single)
-            rung = followed_search(
-                refiner, tried, single, nothing, most_causes, following, near=True
-            )
-            return found(screened, rung or faintly, faint=True)
-        promises = ring_promises(about, refiner)
-    finder = Finder(refiner, terms, tell)
+    if not rings(system):
+        finder = Finder(refiner, _terms(system, lens, calibrated, tell), tell)
+        singles = finder.find(null, most_causes)
+        return found(singles, finder.ranked(), faint=False)
+    nothing = follow_ring(system, calibrated.at, everything=True)
+    chosen = [one for one in system.candidates if not one.fixed]
+    about = faint(system, nothing.about or nothing, chosen, following)
+    screened, faintly = faint_search(about, refiner, refiner.candidates)
+    near = nothing.left < FAINT
+    if near and not _promising(faintly):
+        return found(screened, faintly, faint=True)
+    promises = (
+        [one for one in faintly if one.hypothesis.parts] if near else ring_promises(about, refiner)
+    )
+    single = [one for one in promises if len(one.hypothesis.parts) == 1]
+    led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
+    led.follow(_to_follow(null, single, single if near else ()), single)
+    if near or led.explains:
+        return found(screened, led.fitted() or faintly, faint=True)
+    finder = Finder(refiner, _terms(system, lens, calibrated, tell), tell)
     singles = finder.find(null, most_causes)
     ranked = finder.ranked()
-    if nothing is not None:
-        tried = _to_follow(null, promises, ranked)
-        single = [*promises, *(one for one in ranked if len(one.hypothesis.parts) == 1)]
-        rung = followed_search(refiner, tried, single, nothing, most_causes, following)
-        if rung is not None:
-            return found(singles, rung, faint=True)
-    return found(singles, ranked, faint=False)
+    alone = [one for one in ranked if len(one.hypothesis.parts) == 1]
+    led.follow(_to_follow(null, single, ranked), [*single, *alone])
+    rung = led.fitted()
+    return found(singles, rung or ranked, faint=rung is not None)
+
+
+def _terms(system: System, lens: Lens, calibrated: Calibrated, tell: Tell | None) -> Columns:
+    """What every candidate would do to the lines."""
+
+    def causes(done: int, total: int) -> None:
+        if tell is not None:
+            tell("simulating what each cause would do", done, total)
+
+    return term_columns(system, lens, system.candidates, calibrated.at, calibrated.columns, causes)
 
 
 def _to_follow(
@@ -170,7 +168,9 @@ def _to_follow(
     likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
     # Which places are on, lines tell better, where they tell anything.
     seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
-    known = (*(seen.get(one.hypothesis.names, one) for one in promises[:FOLLOWED]), *likely)
+    most = max((one.log_score for one in promises), default=0.0) - FAR_BEHIND
+    told = [one for one in promises[:FOLLOWED] if one.log_score > most]
+    known = (*(seen.get(one.hypothesis.names, one) for one in told), *likely)
     tried: dict[tuple[str, ...], Fitted] = {}
     for one in known:
         tried.setdefault(one.hypothesis.names, one)

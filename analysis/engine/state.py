@@ -44,12 +44,22 @@ class State:
     @classmethod
     def of(cls, scored: Scored, candidates: Mapping[str, Candidate]) -> "State":
         """From a screened hypothesis."""
+        return cls.at(scored.hypothesis, scored.values, candidates)
+
+    @classmethod
+    def at(
+        cls,
+        hypothesis: Hypothesis,
+        magnitudes: Mapping[tuple[str, str], float],
+        candidates: Mapping[str, Candidate],
+    ) -> "State":
+        """From magnitudes, (candidate, term) -> value; shapes are the hypothesis's."""
         numbers, values = [], []
-        for name in scored.hypothesis.names:
-            candidate, part = candidates[name], scored.hypothesis.parts[name]
+        for name in hypothesis.names:
+            candidate, part = candidates[name], hypothesis.parts[name]
             for group in groups(part):
                 low, high = limits(candidate, group)
-                value = scored.values[name, group[0]]
+                value = magnitudes[name, group[0]]
                 size = next(t.step for t in candidate.terms if t.name == group[0])
                 step = 0.0 if candidate.fixed else MAGNITUDE_STEP * (abs(value) + abs(size))
                 numbers.append(Number(name, group, None, low, high, step))
@@ -63,7 +73,7 @@ class State:
                     )  # fmt: skip
                     values.append(_in(shape, at))
         # A magnitude that is not free has no difference.
-        return cls(scored.hypothesis, candidates, tuple(numbers), np.array(values))
+        return cls(hypothesis, candidates, tuple(numbers), np.array(values))
 
     @property
     def free(self) -> tuple[int, ...]:

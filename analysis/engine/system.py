@@ -203,6 +203,9 @@ class Candidate:
         Its magnitude is not free: there or not there.
     family
         Laws of one thing: two of a family are less likely both there.
+    grows
+        What it does grows faster than its magnitude: it is screened at the whole of its step, for a
+        little of it tells nothing.
     """
 
     name: str
@@ -218,6 +221,7 @@ class Candidate:
     prior: float = 1.0
     fixed: bool = False
     family: str = ""
+    grows: bool = False
 
     def variants(self) -> tuple[dict[str, float], ...]:
         """Every combination of the shapes' screening values."""

@@ -27,9 +27,9 @@ EFFECT = Effect(
     source="rig file",
     signature="in the wrench balance only, -w^2 in rotation; like stiffness at one frequency",
     parameters=(
-        Parameter("roll_share", "1", 0.0, -0.5, 0.5, "e about X", False, True),
-        Parameter("pitch_share", "1", 0.1, -0.5, 0.5, "e about Y", False, True),
-        Parameter("yaw_share", "1", 0.0, -0.5, 0.5, "e about Z", False, True),
+        Parameter("roll_share", "1", 0.0, -0.5, 2.0, "e about X", False, True),
+        Parameter("pitch_share", "1", 0.1, -0.5, 2.0, "e about Y", False, True),
+        Parameter("yaw_share", "1", 0.0, -0.5, 2.0, "e about Z", False, True),
     ),
     change=change,
 )
