@@ -12,6 +12,9 @@ from cdpr8.rigfile import Rig
 DRIVE_SHARE = 2e-3
 """How well the drive makes its amplitude."""
 
+DRIVE_S = 2e-4
+"""How well the drive keeps to its command in time."""
+
 START_S = 2e-4
 """How well the start of the motion is known on the tension clock, where it was recorded."""
 
@@ -100,6 +103,7 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
     for axis in "xyz":
         add("centre_of_mass", f"centre_{axis}_m", rig.platform.centre_of_mass_m.sigma, "m")
     add("drive_amplitude", "amplitude_share", DRIVE_SHARE, "1")
+    add("drive_phase", "late_s", DRIVE_S, "s")
     add("drive_frequency", "frequency_share", CLOCK_PPM * 1e-6, "1")
     if any(one.has_pose for one in recordings):
         add("camera_gain", "gain_share", CAMERA_SHARE, "1")

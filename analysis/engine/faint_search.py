@@ -64,13 +64,8 @@ def faint_search(
         for one in singles[SINGLES:]
         if any(chosen[name].family in kin for name in one.hypothesis.names)
     ]
-    fitted = [_fitted(found, refiner, one) for one in (null, *kept, *best)]
+    fitted = [fitted_there(found, refiner, one) for one in (null, *kept, *best)]
     return singles, sorted(fitted, key=lambda one: -one.log_score)
-
-
-def ring_promises(found: Faint, refiner: Refiner) -> list[Fitted]:
-    """Single causes that would explain what is left where the ring cannot be followed further."""
-    return [_fitted(found, refiner, one) for one in one_more(found, refiner)]
 
 
 def others_beside(refiner: Refiner, led: Followed) -> list[Candidate]:
@@ -156,8 +151,8 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
     )
 
 
-def _fitted(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
-    """The hypothesis as others are, with the score that the ring gives it."""
+def fitted_there(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
+    """A hypothesis as others are, with the score that the ring gives it."""
     nuisance, state = nuisances_of(found, scored), State.of(scored, refiner.candidates)
     fitted = refiner.at(state, refiner.directions_of(nuisance))
     return replace(

@@ -31,7 +31,7 @@ ENOUGH = 1.1
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
 
-EFFORT = 4000.0
+EFFORT = 2500.0
 """Whole simulations, after which nothing new is tried."""
 
 EARLY = 0.15

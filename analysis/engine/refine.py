@@ -68,7 +68,7 @@ class Refiner:
         self.data = data
         self.candidates = {one.name: one for one in system.candidates}
         self._problem = calibrated.problem
-        self._calibrated = calibrated
+        self.calibrated = calibrated
         self._rotation = calibrated.rotation
         self.anew = anew
         if anew:
@@ -157,7 +157,7 @@ class Refiner:
         """
         best, used = fitted, fitted.problem.used
         if anew and not self.anew:
-            closer = Refiner(self.system, self.lens, self.data, self._calibrated, anew=True)
+            closer = Refiner(self.system, self.lens, self.data, self.calibrated, anew=True)
             best = closer._improve(fitted.state, fitted.point.nuisance, used, ROUNDS)
             return closer.settle(best)
         for _ in range(MOST_SETTLING):

@@ -32,9 +32,9 @@ STRAIGHT = 0.8
 """A step that brings less than this of what it promises has left where differences hold: what
 everything does is simulated anew."""
 
-STEPS = 15
-"""So many steps are taken in each window, at most: each is led through until no step promises
-anything. What is left behind in a short window is a wrong turn in the next."""
+STEPS, STEPS_BETWEEN = 15, 5
+"""So many steps are taken in each window, at most, and in those that had to be put in between: each
+is led through until no step promises anything. What is left behind is a wrong turn in the next."""
 
 TELLING = 10.0
 """Where this is left of the squared misfit of a sample, the ring has just been lost."""
@@ -122,7 +122,7 @@ def follow_ring(
             continue
         reached = windows.pop()
         best = (ahead or {}).get(share, np.inf)
-        for _ in range(STEPS):
+        for _ in range(STEPS if share in WINDOWS else STEPS_BETWEEN):
             if samples.effort > EFFORT or not way.step(
                 share, lost=LOST if costs or near else np.inf, best=best
             ):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from analysis.engine.calibrate import Calibrated, calibrate
 from analysis.engine.faint import faint
-from analysis.engine.faint_search import faint_search, ring_promises
+from analysis.engine.faint_search import faint_search, fitted_there, one_more
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed_search import FAR_BEHIND, FollowedSearch
@@ -107,52 +107,85 @@ def search(
     refiner = Refiner(system, lens, data, calibrated, anew=anew)
     null = refiner.fit(Screen(calibrated.problem, refiner.candidates, {}).null())
 
+    found = _Found((), (), faint=False)
+    if rings(system):
+        found = _by_ring(refiner, null, most_causes, tell)
+    if not found.fitted:
+        found = _by_lines(refiner, null, most_causes, tell, found.led)
+    return Search(
+        system, lens, data, calibrated, tuple(found.screened), null, tuple(found.fitted), refiner,
+        faint=found.faint,
+    )  # fmt: skip
+
+
+class _Found(NamedTuple):
+    """Single causes to first order, hypotheses, whether by the ring, and what was led so far."""
+
+    screened: Sequence[Scored]
+    fitted: Sequence[Fitted]
+    faint: bool
+    led: "_Led | None" = None
+
+
+class _Led(NamedTuple):
+    """What was led to the ring's phase so far, and what the ring promised alone."""
+
+    search: FollowedSearch
+    single: Sequence[Fitted]
+
+
+def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None) -> _Found:
+    """By every sample, ring and all; no hypotheses, where that does not come to the noise."""
+
     def following(done: int, total: int) -> None:
         if tell is not None:
             tell("following the ring", done, total)
 
-    def found(screened: Sequence[Scored], fitted: Sequence[Fitted], *, faint: bool) -> Search:
-        return Search(
-            system, lens, data, calibrated, tuple(screened), null, tuple(fitted), refiner,
-            faint=faint,
-        )  # fmt: skip
-
-    if not rings(system):
-        finder = Finder(refiner, _terms(system, lens, calibrated, tell), tell)
-        singles = finder.find(null, most_causes)
-        return found(singles, finder.ranked(), faint=False)
-    nothing = follow_ring(system, calibrated.at, everything=True)
+    system = refiner.system
+    nothing = follow_ring(system, refiner.calibrated.at, everything=True)
     chosen = [one for one in system.candidates if not one.fixed]
     about = faint(system, nothing.about or nothing, chosen, following)
-    screened, faintly = faint_search(about, refiner, refiner.candidates)
     near = nothing.left < FAINT
-    if near and not _promising(faintly):
-        return found(screened, faintly, faint=True)
-    promises = (
-        [one for one in faintly if one.hypothesis.parts] if near else ring_promises(about, refiner)
-    )
-    single = [one for one in promises if len(one.hypothesis.parts) == 1]
+    if near:
+        screened, faintly = faint_search(about, refiner, refiner.candidates)
+        if not _promising(faintly):
+            return _Found(screened, faintly, faint=True)
+        single = [one for one in faintly if len(one.hypothesis.parts) == 1]
+    else:
+        promised = one_more(about, refiner)
+        screened, faintly = promised, []
+        single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
     led.follow(_to_follow(null, single, single if near else ()), single)
     if near or led.explains:
-        return found(screened, led.fitted() or faintly, faint=True)
-    finder = Finder(refiner, _terms(system, lens, calibrated, tell), tell)
+        return _Found(screened, led.fitted() or faintly, faint=True)
+    return _Found((), (), faint=False, led=_Led(led, single))
+
+
+def _by_lines(
+    refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None, led: _Led | None
+) -> _Found:
+    """By lines, the ring left out; what is found there is led to the phase, where there is a ring."""
+    finder = Finder(refiner, _terms(refiner, tell), tell)
     singles = finder.find(null, most_causes)
     ranked = finder.ranked()
+    if led is None:
+        return _Found(singles, ranked, faint=False)
     alone = [one for one in ranked if len(one.hypothesis.parts) == 1]
-    led.follow(_to_follow(null, single, ranked), [*single, *alone])
-    rung = led.fitted()
-    return found(singles, rung or ranked, faint=rung is not None)
+    led.search.follow(_to_follow(null, led.single, ranked), [*led.single, *alone])
+    rung = led.search.fitted()
+    return _Found(singles, rung or ranked, faint=rung is not None)
 
 
-def _terms(system: System, lens: Lens, calibrated: Calibrated, tell: Tell | None) -> Columns:
+def _terms(refiner: Refiner, tell: Tell | None) -> Columns:
     """What every candidate would do to the lines."""
 
     def causes(done: int, total: int) -> None:
         if tell is not None:
             tell("simulating what each cause would do", done, total)
 
-    return term_columns(system, lens, system.candidates, calibrated.at, calibrated.columns, causes)
+    found, system = refiner.calibrated, refiner.system
+    return term_columns(system, refiner.lens, system.candidates, found.at, found.columns, causes)
 
 
 def _to_follow(

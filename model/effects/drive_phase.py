@@ -22,6 +22,6 @@ EFFECT = Effect(
     equation="X*(t - tau)",
     source="design, section 4",
     signature="one lag in pose and tensions together",
-    parameters=(Parameter("late_s", "s", 0.01, 0.0, 0.2, "tau", False, True),),
+    parameters=(Parameter("late_s", "s", 0.01, -0.002, 0.2, "tau", False, True),),
     command=command,
 )

@@ -25,6 +25,7 @@ from analysis.engine.lens import Lens
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Screen
 from analysis.engine.search import Search, look
+from analysis.engine.sensitivity import term_columns
 from cdpr8.rigfile import Excitation, load_rig
 from cdpr8.rigfile.checks import structure_matrix_at_rest
 from model import ActiveEffect
@@ -45,7 +46,9 @@ def undecided(recorded: Recording) -> tuple[RecordedMachine, Diagnosis]:
     machine = RecordedMachine([recorded], NAMES, workers=1)
     seen = look(machine)
     candidates = {one.name: one for one in machine.candidates}
-    screen = Screen(seen.calibrated.problem, candidates, seen.terms)
+    at, columns = seen.calibrated.at, seen.calibrated.columns
+    terms = term_columns(machine, seen.lens, machine.candidates, at, columns)
+    screen = Screen(seen.calibrated.problem, candidates, terms)
     refiner = Refiner(machine, seen.lens, seen.data, seen.calibrated)
     null = refiner.fit(screen.null())
     fitted = [refiner.fit(screen.best_of(name)) for name in NAMES]
@@ -67,7 +70,7 @@ def _ambiguous(
     rival = Other(NAMES[1], 0.45, second)
     cause = Cause(NAMES[0], 0.55, 1.0, (rival,), {}, {}, {}, {}, {}, ())
     judgement = Judgement("ambiguous", (cause,), first, (0.55, 0.45, 0.0))
-    searched = Search(machine, lens, data, calibrated, {}, (), null, (first, second, null), refiner)
+    searched = Search(machine, lens, data, calibrated, (), null, (first, second, null), refiner)
     return Diagnosis(machine, calibrated, (), searched, judgement, None, None)
 
 

@@ -1,4 +1,4 @@
-"""Steps in valleys that turn: too short where differences promise too little, too long elsewhere."""
+"""Steps in valleys that turn: differences promise too little there, or too much."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
