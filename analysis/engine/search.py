@@ -165,7 +165,7 @@ def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None
 def _by_lines(
     refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None, led: _Led | None
 ) -> _Found:
-    """By lines, the ring left out; what is found there is led to the phase, where there is a ring."""
+    """By lines, the ring left out; what is found there is led to the phase of the ring, if any."""
     finder = Finder(refiner, _terms(refiner, tell), tell)
     singles = finder.find(null, most_causes)
     ranked = finder.ranked()
