@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from analysis.diagnosis.candidates import candidates, library_values
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
+from analysis.diagnosis.sight import Sight, seen_by
 from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction, Ring
 from cdpr8.rigfile import Rig
-from model import ActiveEffect, Machine, Simulation, Task, observe, simulate_many
+from model import ActiveEffect, Machine, Simulation, Task, simulate_many
 from model.library.discovery import library
 from model.motion import RampedSine
 from model.rest import tones_hz
@@ -40,26 +41,14 @@ MOST_BIAS = 0.1
 
 _GUARDS: dict[Ring, tuple[float, ...]] = {"left_out": (0.5, 1.0), "damped": (1.0,), "as_is": (0.0,)}
 
-FAR = 1e6
-"""Where a simulation blew up, everything is this far off."""
-
 
 @dataclass(frozen=True)
 class _Job:
-    """One run of one point: what to simulate and how to observe it."""
+    """One run of one point: what to simulate and how to look at it."""
 
     key: tuple[object, ...]
     task: Task
-    seen: tuple[ActiveEffect, ...]
-    start_s: float
-    pose_zero: Array
-    late_s: Array
-
-    @property
-    def whole_key(self) -> tuple[object, ...]:
-        """Equal for jobs that are simulated and observed alike."""
-        looked = tuple((one.name, *sorted(one.values.items())) for one in self.seen)
-        return self.key, looked, self.start_s, self.pose_zero.tobytes(), self.late_s.tobytes()
+    sight: Sight
 
 
 class RecordedMachine:
@@ -136,10 +125,10 @@ class RecordedMachine:
             done = self._solve({job.key: job.task for group in jobs for job in group})
             seen: dict[tuple[object, ...], Prediction] = {}
             for group, whole in zip(jobs, predictions, strict=True):
-                key = tuple(job.whole_key for job in group)
+                key = tuple((job.key, job.sight.key) for job in group)
                 if key not in seen:
                     simulation = _without_bias([done[job.key] for job in group])
-                    seen[key] = seen_by(recording, simulation, group[0])
+                    seen[key] = seen_by(recording, simulation, group[0].sight)
                 whole.extend(seen[key])
         return [reduce(prediction) for prediction in predictions]
 
@@ -168,7 +157,7 @@ class RecordedMachine:
         )
         key = (motion and motion.duration_s, *((one.name, *sorted(one.values.items()))
                                                for one in inside))  # fmt: skip
-        return _Job(key, task, outside, start_s, pose_zero, late_s)
+        return _Job(key, task, Sight(outside, start_s, pose_zero, late_s))
 
     def _moved(
         self, point: Point, record: int
@@ -252,24 +241,6 @@ def _cut(recording: Recording, upto: float) -> RampedSine | None:
     return replace(whole, duration_s=float(until_s)) if until_s < whole.duration_s else None
 
 
-def seen_by(recording: Recording, simulation: Simulation, job: _Job) -> Prediction:
-    """What cells and camera would report at the samples of a run."""
-    tensions = recording.bundles[: len(recording.cables)]
-    longest = max(len(one.t_s) for one in tensions)
-    times = np.full((longest, 8), simulation.t_s[0])
-    for cable, one in zip(recording.cables, tensions, strict=True):
-        times[: len(one.t_s), cable - 1] = one.t_s - job.start_s - job.late_s[cable - 1]
-    stamps = recording.bundles[-1].t_s - job.start_s if recording.has_pose else simulation.t_s[:1]
-    seen = observe(simulation, job.seen, tension_t_s=times, pose_t_s=stamps)
-    found = [
-        _finite(seen.tension_n[: len(one.t_s), cable - 1 : cable])
-        for cable, one in zip(recording.cables, tensions, strict=True)
-    ]
-    if recording.has_pose:
-        found.append(_finite(seen.pose + job.pose_zero))
-    return found
-
-
 def _without_bias(simulations: Sequence[Simulation]) -> Simulation:
     """One simulation as it is; of two, the second with twice the damping, none of the bias."""
     one, other = simulations[0], simulations[-1]
@@ -281,10 +252,6 @@ def _without_bias(simulations: Sequence[Simulation]) -> Simulation:
         pose=2.0 * one.pose - other.pose,
         pose_rate=2.0 * one.pose_rate - other.pose_rate,
     )
-
-
-def _finite(values: Array) -> Array:
-    return np.clip(np.nan_to_num(values, nan=FAR, posinf=FAR, neginf=-FAR), -FAR, FAR)
 
 
 def _guard(rig: Rig, drive_hz: float) -> Array:

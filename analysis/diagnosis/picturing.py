@@ -82,7 +82,8 @@ def _seen(
     machine: "RecordedMachine", point: "Point", place: int
 ) -> tuple[list[Array], tuple[list[Array], list[Array]]]:
     """What would be recorded at a point, and elongation and rate of the cables, by bundle."""
-    from analysis.diagnosis.machine import OUTPUT_HZ, seen_by
+    from analysis.diagnosis.machine import OUTPUT_HZ
+    from analysis.diagnosis.sight import seen_by
     from model.simulator import run
 
     recording = machine.recordings[place]
@@ -91,18 +92,19 @@ def _seen(
     elongation: list[Array] = []
     rate: list[Array] = []
     for cable, bundle in zip(recording.cables, recording.bundles, strict=False):
-        t_s = bundle.t_s - job.start_s
+        t_s = bundle.t_s - job.sight.start_s
         for kept, all_ in (
             (elongation, simulation.elongation_m),
             (rate, simulation.axial_velocity_m_per_s),
         ):
             kept.append(np.interp(t_s, simulation.t_s, all_[:, cable - 1]))
-    return seen_by(recording, simulation, job), (elongation, rate)
+    return seen_by(recording, simulation, job.sight), (elongation, rate)
 
 
 def _peaks(machine: "RecordedMachine", place: int) -> tuple[float, float, float] | None:
     """See `Record.peaks_deg`."""
-    from analysis.diagnosis.machine import OUTPUT_HZ, seen_by
+    from analysis.diagnosis.machine import OUTPUT_HZ
+    from analysis.diagnosis.sight import seen_by
     from analysis.engine.system import Point
     from model.simulator import run
 
@@ -119,15 +121,15 @@ def _peaks(machine: "RecordedMachine", place: int) -> tuple[float, float, float]
     for one in _stretches(recording.bundles):
         if one.repeats:
             inside |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
-            fine |= (simulation.t_s + job.start_s >= one.start_s) & (
-                simulation.t_s + job.start_s < one.end_s
+            fine |= (simulation.t_s + job.sight.start_s >= one.start_s) & (
+                simulation.t_s + job.sight.start_s < one.end_s
             )
     if not inside.any() or not fine.any():
         return None
     at_rest = bundle.t_s < recording.excitation.start_s + recording.shift_s
     recorded = bundle.value[:, column]
     recorded = recorded - (recorded[at_rest].mean() if at_rest.any() else recorded[inside].mean())
-    framed = seen_by(recording, simulation, job)[-1][:, column]
+    framed = seen_by(recording, simulation, job.sight)[-1][:, column]
     peaks = [
         np.abs(simulation.pose[fine, column]),
         np.abs(framed[inside]),
