@@ -73,6 +73,10 @@ def observe(
         if one.effect.acts is Acts.CELL and one.effect.measure is not None:
             tension = one.effect.measure(simulation.t_s, tension, **one.columns())
     look = _camera(simulation)
+    for one in those_that_act(simulation.effects):
+        # What moves a frame on the platform moves the point that the camera sees.
+        if one.effect.acts is Acts.PARAMETER and one.effect.measure is not None:
+            look = one.effect.measure(look, **one.numbers())
     for one in chain:
         if one.effect.acts in (Acts.CAMERA, Acts.CLOCK) and one.effect.measure is not None:
             look = one.effect.measure(look, **one.numbers())

@@ -18,11 +18,25 @@ def change(machine: "Machine", centre_x_m: Any, centre_y_m: Any, centre_z_m: Any
     return replace(machine, anchor=machine.anchor - moved, base=machine.base - moved)
 
 
+def measure(look: Any, centre_x_m: float, centre_y_m: float, centre_z_m: float) -> Any:
+    """X + d - R d: a camera sees the point that the rig file takes for the centre of mass."""
+    from scipy.spatial.transform import Rotation
+
+    moved = np.array([centre_x_m, centre_y_m, centre_z_m])
+
+    def seen(stamp_s: Any) -> Any:
+        pose = look(stamp_s)
+        turned = Rotation.from_euler("ZYX", pose[:, 5:2:-1]).apply(moved)
+        return np.hstack([pose[:, :3] + moved - turned, pose[:, 3:]])
+
+    return seen
+
+
 EFFECT = Effect(
     name="centre_of_mass",
     title="centre of mass of the platform",
     acts=Acts.PARAMETER,
-    equation="x_P - d, B - d",
+    equation="x_P - d, B - d; seen: x + d - R d",
     source="rig file",
     signature="a constant moment of the weight; rotation and translation couple",
     parameters=(
@@ -31,4 +45,5 @@ EFFECT = Effect(
         Parameter("centre_z_m", "m", 0.0, -0.05, 0.05, "d along Z", False, True),
     ),
     change=change,
+    measure=measure,
 )

@@ -119,8 +119,8 @@ class Effect:
     command
         Drive: gives another `Motion`.
     measure
-        Cell: gives other tensions, of times, tensions and parameters. Camera and clock: gives
-        another function from stamps to poses.
+        Cell: gives other tensions, of times, tensions and parameters. Camera, clock, and a
+        parameter that moves the point that is seen: gives another function from stamps to poses.
     order
         Cell, camera and clock: the place in the chain from the physical quantity to the record.
     steepest

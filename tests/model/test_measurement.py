@@ -4,10 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from cdpr8.rigfile import Rig
+from model import ActiveEffect, Machine, Task, observe
 from model.effects import library
 from model.motion import RampedSine
 from model.observation import _read
+from model.simulator import run
 
 TIME_S = np.arange(4001) / 1000.0
 CIRCULAR = 2.0 * np.pi * 2.0
@@ -108,3 +112,24 @@ def test_a_jump_between_rows_reaches_no_further_than_the_next_row() -> None:
     seen = _read(time_s, tension, read_s)[:, 0]
     away = (read_s < 1.8) | (read_s > 2.1)
     assert np.array_equal(seen[away], (read_s[away] >= 2.0).astype(float))
+
+
+def test_a_camera_sees_the_point_that_the_rig_file_takes_for_the_centre_of_mass(rig: Rig) -> None:
+    # Cable lengths tell where the platform is, whatever point of it moves as a body falls.
+    moved = {"centre_x_m": 3e-3, "centre_y_m": -2e-3, "centre_z_m": 1e-3}
+    pitching = rig.excitation.model_copy(update={"motion_s": 1.0, "rest_s": 0.2})
+    simulation = run(Task(rig, pitching, effects=(ActiveEffect("centre_of_mass", moved),)))
+    machine = Machine.from_rig(rig)
+
+    def missed_m(pose: np.ndarray) -> float:
+        turned = Rotation.from_euler("xyz", pose[:, 3:])
+        missed = []
+        for anchor, base, rest in zip(
+            machine.anchor, machine.base, machine.rest_length, strict=True
+        ):
+            line = base - pose[:, :3] - turned.apply(anchor)
+            missed.append(np.linalg.norm(line, axis=1) - rest)
+        return float(np.abs(np.stack(missed, axis=1) - simulation.elongation_m).max())
+
+    assert missed_m(observe(simulation).pose) < 1e-12
+    assert missed_m(simulation.pose) > 5e-5
