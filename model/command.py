@@ -188,7 +188,7 @@ def list_effects(
         terminal.say_json({"effects": document.as_json()})
         return
     if markdown:
-        terminal.say(document.markdown())
+        terminal.say(document.markdown().rstrip("\n"))
         return
     from rich.table import Table
 
