@@ -25,9 +25,6 @@ RESTARTS = 1
 """Nothing is led to the phase once more from where so many hypotheses have come: one may have found
 a way that nothing missed."""
 
-ENOUGH = 1.1
-"""What is led to a squared misfit of a sample below this explains: nothing else is looked for."""
-
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
 
@@ -109,10 +106,9 @@ class FollowedSearch:
                 break
 
     @property
-    def explains(self) -> bool:
-        """Whether something was led to the noise."""
-        count = len(self._samples.shares)
-        return bool(self._led) and self._best.misfit < ENOUGH * count
+    def arrived(self) -> bool:
+        """Whether something was led to the end, near the noise."""
+        return bool(self._led) and self._best.misfit < FAINT * len(self._samples.shares)
 
     def fitted(self) -> list[Fitted] | None:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""

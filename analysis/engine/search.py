@@ -157,7 +157,7 @@ def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None
         single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
     led.follow(_to_follow(null, single, single if near else ()), single)
-    if near or led.explains:
+    if near or led.arrived:
         return _Found(screened, led.fitted() or faintly, faint=True)
     return _Found((), (), faint=False, led=_Led(led, single))
 
