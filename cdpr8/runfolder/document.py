@@ -106,7 +106,8 @@ here reads; the JSON Schemas are in `cdpr8/runfolder/schemas/`.
 Every file is valid when cut at any byte: a torn last line is dropped and said. Nothing is repaired:
 a damaged cell is refused with its file, line and column. An empty cell means: not measured. Times
 are seconds from the run's monotonic origin; positions in m, forces in N, angles in deg; cables are
-numbered 1 to 8; the pose is that of the platform's centre of mass in O-XYZ.
+numbered 1 to 8; the pose is that of the point that the rig file takes for the platform's centre of
+mass, in O-XYZ.
 """
 
 
