@@ -58,7 +58,8 @@ class Judgement:
     verdict
         "none", "parameter", "explained", "ambiguous" or "unexplained".
     causes
-        The causes, the surest first; empty for "none".
+        The causes, the surest first; empty for "none", and where no ring can be followed though
+        lines ask for nothing: "unexplained".
     chosen
         The likeliest hypothesis.
     probability
@@ -110,7 +111,9 @@ def judge(
     chosen = fitted[int(np.argmax(weights))]
     if absent > 0.5 or not chosen.hypothesis.parts:
         null = next(one for one in fitted if not one.hypothesis.parts)
-        return Judgement("none", (), null, tuple(float(w) for w in weights))
+        # Parameters alone follow a ring from which nothing was left out.
+        verdict = "unexplained" if lost else "none"
+        return Judgement(verdict, (), null, tuple(float(w) for w in weights))
     causes: tuple[Cause, ...] = ()
     for _ in range(len(chosen.hypothesis.parts)):
         every = (

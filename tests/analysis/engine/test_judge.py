@@ -59,3 +59,16 @@ def test_where_no_ring_can_be_followed_each_cause_that_is_needed_is_a_doubt(
     assert said.verdict == "ambiguous"
     assert said.causes[0].name == "damping"
     assert said.causes[0].probability == pytest.approx(1.0 - DOUBT_A_CAUSE, abs=0.01)
+
+
+def test_nothing_is_said_to_be_left_out_only_where_parameters_follow_the_ring(
+    refiner: Refiner,
+) -> None:
+    nothing = [
+        fitted(refiner, None, -10.0, 1.0),
+        fitted(refiner, state_of(DAMPING, 0.01), -40.0, 1.0),
+    ]
+    assert judge(nothing, CANDIDATES).verdict == "none"
+    said = judge(nothing, CANDIDATES, lost=True)
+    assert said.verdict == "unexplained"
+    assert said.causes == ()
