@@ -124,6 +124,16 @@ def test_every_verdict_is_told_as_what_it_is(verdict: str, causes: Any, wanted: 
     assert markdown(said, sections(said), "hand").startswith("# Diagnosis of hand\n")
 
 
+def test_a_ring_that_nothing_follows_is_not_called_a_motion_that_nothing_follows() -> None:
+    said = statement("unexplained", [])
+    for significant, wanted in (
+        (False, "follow how the platform rings"),
+        (True, "not follow the rec"),
+    ):
+        said["remains"] = {**said["remains"], "significant": significant}
+        assert wanted in headline(said)
+
+
 def test_the_paragraph_has_the_numbers() -> None:
     said = paragraph(statement())
     assert "Cables 1 and 2 lose 0.25 ± 0.02 N to friction at their pulleys" in said
