@@ -74,23 +74,28 @@ def headline(said: Statement) -> str:
             f"{listed([_set(one) for one in causes], 'and beside it')}."
         )
     if verdict == "unexplained":
-        if not causes and not said["remains"]["significant"]:
-            return (
-                "In steady motion the simulation agrees with the recording, but no parameters within "
-                "what is known of them follow how the platform rings, and nothing in the library of "
-                "effects says why."
-            )
-        near = listed([_set(one) for one in causes], "with")
-        return "The simulation does not follow the recording, and nothing in the library of " + (
-            f"effects brings it to the noise. Nearest comes {near}, more likely wrong than right."
-            if causes
-            else "effects says why."
-        )
+        return _unexplained(said)
     return (
         f"Recording and simulation differ in {len(said['located'])} places beyond the noise; "
         "causes were not asked for."
         if said["located"]
         else "Nowhere do recording and simulation differ beyond the noise."
+    )
+
+
+def _unexplained(said: Statement) -> str:
+    causes = said["causes"]
+    if not causes and not said["remains"]["significant"]:
+        return (
+            "In steady motion the simulation agrees with the recording, but no parameters within "
+            "what is known of them follow how the platform rings, and nothing in the library of "
+            "effects says why."
+        )
+    near = listed([_set(one) for one in causes], "with")
+    return "The simulation does not follow the recording, and nothing in the library of " + (
+        f"effects brings it to the noise. Nearest comes {near}, more likely wrong than right."
+        if causes
+        else "effects says why."
     )
 
 
