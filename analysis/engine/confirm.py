@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.search import Search
+from analysis.engine.search import Search, rings
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Ring, System
 
@@ -75,7 +75,7 @@ def _errors(
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
     start = Followed(nuisance, state)
     tried = [replace(start.point, ring=ring) for ring in RINGS]
-    if any(bundle.tones_hz for bundle in system.bundles):
+    if rings(system):
         led = follow_ring(system, nuisance, state, held=held, near=near)
         if near and led.share < 1.0:
             led = follow_ring(system, nuisance, state, held=held)
