@@ -74,7 +74,7 @@ def lane_integrator(announce: Announce | None = None) -> Any:
 def _kernel_modules() -> tuple[ModuleType, ...]:
     """Modules whose functions are compiled; any of their functions may be called in the kernel."""
     from model import cable, kernel, kinematics, lanes, platform
-    from model.library import assembled, context, smooth
+    from model.library import assembled, bristle, context, smooth
     from model.library import lanes as layout
     from model.library.discovery import effect_modules
 
@@ -83,6 +83,7 @@ def _kernel_modules() -> tuple[ModuleType, ...]:
         cable,
         platform,
         smooth,
+        bristle,
         context,
         layout,
         *effect_modules(),

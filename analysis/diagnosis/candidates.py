@@ -38,6 +38,8 @@ class Policy:
     form_share: float | None = None
 
 
+BRISTLE_LOSS = {"bristle_loss_s": (5e-4,)}
+
 POLICIES: dict[str, Policy] = {
     "anchor_play": Policy(shapes={"hold_n": (0.5,)}, form_share=0.3),
     "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
@@ -50,8 +52,13 @@ POLICIES: dict[str, Policy] = {
     "cable_modes": Policy(form_share=0.4),
     "cable_end_forcing": Policy(form_share=0.2),
     "frame_compliance": Policy(shapes={"frame_hz": (25.0,), "frame_loss": (0.03,)}),
-    "pulley_presliding": Policy(shapes={"presliding_m": (3e-4,)}),
-    "pulley_stribeck": Policy(shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,)}),
+    "pulley_coulomb": Policy(shapes={"presliding_m": (5e-5,)} | BRISTLE_LOSS),
+    "pulley_capstan": Policy(shapes={"presliding_m": (5e-5,)} | BRISTLE_LOSS),
+    "pulley_presliding": Policy(shapes={"presliding_m": (6e-4,)} | BRISTLE_LOSS),
+    "pulley_stribeck": Policy(
+        shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,), "presliding_m": (5e-5,)}
+        | BRISTLE_LOSS
+    ),
     "umbilical": Policy(shapes={"loss_s": (5e-3,)}),
     "pulley_inertia": Policy(form_share=LINEAR),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),

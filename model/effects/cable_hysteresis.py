@@ -1,4 +1,4 @@
-"""Rate-independent hysteresis of the braided cable (Bouc-Wen)."""
+"""Rate-independent hysteresis of the braided cable: its strands yield one after the other."""
 
 from typing import Any
 
@@ -11,13 +11,16 @@ ROUNDING_M_PER_S = 1e-4
 ROUNDING = 1e-3
 """Width over which |z| is rounded, as a share of the yield elongation."""
 
-
-def pull(loop_share: Any, fibre: Any, stiffness: Any) -> Any:
-    """Add alpha k z."""
-    return loop_share * stiffness * fibre
+EARLY, LATE = 1.0 / 3.0, 5.0 / 3.0
+"""Yield elongations of the first and the last third of the strands, over that of the second."""
 
 
-def rates(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
+def pull(loop_share: Any, first: Any, second: Any, third: Any, stiffness: Any) -> Any:
+    """Add alpha k (z_1 + z_2 + z_3) / 3."""
+    return loop_share * stiffness * (first + second + third) / 3.0
+
+
+def _held(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
     """Give z' = x' - (|x'| z |z| + x' z^2) / (2 x_y^2)."""
     size = smooth_size(fibre, ROUNDING * yield_m)
     speed = smooth_size(elongation_rate, ROUNDING_M_PER_S)
@@ -25,19 +28,36 @@ def rates(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
     return elongation_rate - 0.5 * bent / (yield_m * yield_m)
 
 
+def rates(
+    yield_m: Any, first: Any, second: Any, third: Any, elongation_rate: Any
+) -> tuple[Any, Any, Any]:
+    """Of each third, by its own yield elongation."""
+    return (
+        _held(EARLY * yield_m, first, elongation_rate),
+        _held(yield_m, second, elongation_rate),
+        _held(LATE * yield_m, third, elongation_rate),
+    )
+
+
 EFFECT = Effect(
     name="cable_hysteresis",
-    title="Bouc-Wen hysteresis of the cable",
+    title="hysteresis of the cable",
     acts=Acts.CABLE,
-    equation="T += a k z, z' = x' - (|x'| z |z| + x' z^2)/(2 x_y^2), x = Delta L",
-    source="Wen, J. Eng. Mech. Div. ASCE 102 (1976) 249, n = 2",
+    equation="T += a k (z_1 + z_2 + z_3)/3, z' = x' - (|x'| z |z| + x' z^2)/(2 y^2), x = Delta L, "
+    "y = x_y/3, x_y, 5 x_y/3",
+    source="strands that yield between 0 and 2 x_y: Iwan, J. Appl. Mech. 33 (1966) 893; each by "
+    "Wen, J. Eng. Mech. Div. ASCE 102 (1976) 249, n = 2",
     signature="weak odd harmonics, a loop with sharp tips, rate-independent; tan delta and "
     "stiffness depend on amplitude",
     parameters=(
         Parameter("loop_share", "1", 0.1, 0.0, 0.5, "a", magnitude=True),
-        Parameter("yield_m", "m", 1e-3, 5e-5, 2e-2, "x_y"),
+        Parameter("yield_m", "m", 1e-3, 5e-5, 2e-2, "x_y, on average"),
     ),
-    states=(State("fibre", "m", "z, what the fibres hold"),),
+    states=(
+        State("first", "m", "z_1, what the strands hold that yield first"),
+        State("second", "m", "z_2, those after them"),
+        State("third", "m", "z_3, those that yield last"),
+    ),
     pull=pull,
     rates=rates,
     longest_step_s=2e-3,

@@ -2,43 +2,56 @@
 
 from typing import Any
 
-from model.library.effect import Acts, Effect, Parameter
-from model.library.smooth import smooth_sign
+from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.effect import Acts, Effect, Parameter, State
 
 
 def pull(
     friction: Any,
     wrap_rad: Any,
-    switch_m_per_s: Any,
+    presliding_m: Any,
+    bristle_loss_s: Any,
+    bristle: Any,
     axial_velocity: Any,
     elastic: Any,
 ) -> Any:
-    """T (exp(mu theta sgn v) - 1), the exponential by its series: 2e-6 of T at mu theta = 0.3."""
-    a = friction * wrap_rad * smooth_sign(axial_velocity, switch_m_per_s)
+    """T (exp(mu theta (z + t_b z')) - 1), by its series: 2e-6 of T at mu theta = 0.3."""
+    rate = bent(bristle, axial_velocity, presliding_m, 1.0)
+    a = friction * wrap_rad * (bristle + bristle_loss_s * rate)
     series = 1.0 + a / 2.0 * (1.0 + a / 3.0 * (1.0 + a / 4.0 * (1.0 + a / 5.0)))
     return elastic * a * series
 
 
-def steepest(friction: Any, wrap_rad: Any, switch_m_per_s: Any, pretension: Any) -> Any:
-    """Give mu theta T / v_s, at reversal, with room for T above T_0."""
-    return 2.0 * pretension * friction * wrap_rad / switch_m_per_s
+def rates(presliding_m: Any, bristle: Any, axial_velocity: Any) -> Any:
+    """Z follows sgn v within x_s."""
+    return bent(bristle, axial_velocity, presliding_m, 1.0)
+
+
+def steepest(
+    friction: Any, wrap_rad: Any, presliding_m: Any, bristle_loss_s: Any, pretension: Any
+) -> Any:
+    """Give mu theta T t_b / x_s, of a bristle that sticks, with room for T above T_0."""
+    return 2.0 * pretension * friction * wrap_rad * bristle_loss_s / presliding_m
 
 
 EFFECT = Effect(
     name="pulley_capstan",
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += T (exp(mu theta v / sqrt(v^2 + v_s^2)) - 1)",
+    equation="T += T (exp(mu theta (z + t_b z')) - 1), z' = (v - |v| z)/(x_s + |v| t), t = 50 us",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",
     parameters=(
         Parameter("friction", "1", 0.03, 0.0, 0.5, "mu", magnitude=True),
         Parameter("wrap_rad", "rad", 1.5708, 0.1, 6.2832, "theta, angle of contact"),
-        Parameter("switch_m_per_s", "m/s", 2e-3, 1e-4, 0.05, "v_s, width of the reversal"),
+        Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
+        BRISTLE_LOSS,
     ),
+    states=(State("bristle", "1", "z, the bent bristle"),),
     pull=pull,
     steepest=steepest,
+    rates=rates,
     longest_step_s=1e-3,
-    cost="creeps below v_s instead of sticking; four times the steps",
+    cost="|v| is rounded over 0.1 mm/s; four times the steps",
 )

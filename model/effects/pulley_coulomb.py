@@ -2,34 +2,46 @@
 
 from typing import Any
 
-from model.library.effect import Acts, Effect, Parameter
-from model.library.smooth import smooth_sign
+from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.effect import Acts, Effect, Parameter, State
 
 
-def pull(coulomb_n: Any, switch_m_per_s: Any, axial_velocity: Any) -> Any:
-    """F_c sgn(v): the tension at the platform is higher while the cable is drawn out."""
-    return coulomb_n * smooth_sign(axial_velocity, switch_m_per_s)
+def pull(
+    coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any, bristle: Any, axial_velocity: Any
+) -> Any:
+    """F_c (z + t_b z'): the tension at the platform is higher while the cable is drawn out."""
+    rate = bent(bristle, axial_velocity, presliding_m, 1.0)
+    return coulomb_n * (bristle + bristle_loss_s * rate)
 
 
-def steepest(coulomb_n: Any, switch_m_per_s: Any) -> Any:
-    """F_c / v_s, at reversal."""
-    return coulomb_n / switch_m_per_s
+def rates(presliding_m: Any, bristle: Any, axial_velocity: Any) -> Any:
+    """Z follows sgn v within x_s."""
+    return bent(bristle, axial_velocity, presliding_m, 1.0)
+
+
+def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
+    """F_c t_b / x_s, of a bristle that sticks."""
+    return coulomb_n * bristle_loss_s / presliding_m
 
 
 EFFECT = Effect(
     name="pulley_coulomb",
     title="Coulomb friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c v / sqrt(v^2 + v_s^2)",
-    source="Coulomb (1785); Olsson et al., Eur. J. Control 4 (1998) 176, Section 2",
+    equation="T += F_c (z + t_b z'), z' = (v - |v| z)/(x_s + |v| t), t = 50 us",
+    source="Coulomb (1785); sticks as by Canudas de Wit et al., IEEE TAC 40 (1995) 419; Olsson et "
+    "al., Eur. J. Control 4 (1998) 176",
     signature="step at velocity reversal; odd harmonics as 1/n; quadrature 4 F_c / pi, whatever "
     "the amplitude and the frequency",
     parameters=(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
-        Parameter("switch_m_per_s", "m/s", 2e-3, 1e-4, 0.05, "v_s, width of the reversal"),
+        Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
+        BRISTLE_LOSS,
     ),
+    states=(State("bristle", "1", "z, the bent bristle"),),
     pull=pull,
     steepest=steepest,
+    rates=rates,
     longest_step_s=1e-3,
-    cost="creeps below v_s instead of sticking; four times the steps",
+    cost="|v| is rounded over 0.1 mm/s; four times the steps",
 )

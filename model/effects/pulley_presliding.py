@@ -1,22 +1,10 @@
-"""Friction that bends before it slips (Dahl), the cable elastic on both sides of the pulley."""
+"""Friction that bends before it slips, the cable elastic on both sides of the pulley."""
 
 from typing import Any
 
+from model.library.bristle import BRISTLE_LOSS, ROUNDING_M_PER_S, bent
 from model.library.effect import Acts, Effect, Parameter, State
-from model.library.smooth import smooth_sign, smooth_size
-
-ROUNDING_M_PER_S = 1e-4
-"""Width over which |v| is rounded at reversal."""
-
-
-def pull(coulomb_n: Any, far_share: Any, bristle: Any) -> Any:
-    """F_c z k_span / (k_span + k_far): all of it where all the give is beyond the pulley."""
-    return far_share * coulomb_n * bristle
-
-
-def behind(coulomb_n: Any, bristle: Any) -> Any:
-    """The whole of it stands between the two sides of the pulley."""
-    return coulomb_n * bristle
+from model.library.smooth import smooth_sign
 
 
 def rates(
@@ -31,26 +19,61 @@ def rates(
     toward = 1.0 - bristle * smooth_sign(axial_velocity, ROUNDING_M_PER_S)
     held = coulomb_n * far_share * (1.0 - far_share) * toward / (presliding_m * stiffness)
     slip = far_share * axial_velocity / (1.0 + held)
-    return (slip - smooth_size(slip, ROUNDING_M_PER_S) * bristle) / presliding_m
+    return bent(bristle, slip, presliding_m, 1.0)
+
+
+def behind(
+    coulomb_n: Any,
+    presliding_m: Any,
+    far_share: Any,
+    bristle_loss_s: Any,
+    bristle: Any,
+    axial_velocity: Any,
+    stiffness: Any,
+) -> Any:
+    """F_c (z + t_b z'): the whole of it stands between the two sides of the pulley."""
+    rate = rates(coulomb_n, presliding_m, far_share, bristle, axial_velocity, stiffness)
+    return coulomb_n * (bristle + bristle_loss_s * rate)
+
+
+def pull(
+    coulomb_n: Any,
+    presliding_m: Any,
+    far_share: Any,
+    bristle_loss_s: Any,
+    bristle: Any,
+    axial_velocity: Any,
+    stiffness: Any,
+) -> Any:
+    """That times k_span / (k_span + k_far): all of it where all the give is beyond the pulley."""
+    rate = rates(coulomb_n, presliding_m, far_share, bristle, axial_velocity, stiffness)
+    return far_share * coulomb_n * (bristle + bristle_loss_s * rate)
+
+
+def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
+    """F_c t_b / x_s, of a bristle that sticks."""
+    return coulomb_n * bristle_loss_s / presliding_m
 
 
 EFFECT = Effect(
     name="pulley_presliding",
     title="presliding friction at the pulley, cable elastic on both sides",
     acts=Acts.PULLEY,
-    equation="T += r F_c z, z' = (s' - |s'| z)/x_s, s' = r v / (1 + F_c r (1-r)(1 - z sgn v)"
-    "/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far",
+    equation="T += r F_c (z + t_b z'), z' = (s' - |s'| z)/(x_s + |s'| t), s' = r v / (1 + F_c r "
+    "(1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 50 us",
     source="Dahl, Aerospace Corp. TOR-0158 (1968); Canudas de Wit et al., IEEE TAC 40 (1995) 419",
     signature="rounded reversal; a loop at small amplitude; below x_s it looks like stiffness",
     parameters=(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
-        Parameter("presliding_m", "m", 3e-4, 5e-5, 5e-3, "x_s"),
+        Parameter("presliding_m", "m", 6e-4, 2e-4, 5e-3, "x_s"),
         Parameter("far_share", "1", 1.0, 0.05, 1.0, "r: the give beyond the pulley, of all"),
+        BRISTLE_LOSS,
     ),
     states=(State("bristle", "1", "z, the bent bristle"),),
     pull=pull,
     behind=behind,
     rates=rates,
+    steepest=steepest,
     longest_step_s=1e-3,
     cost="|v| is rounded over 0.1 mm/s; four times the steps",
 )

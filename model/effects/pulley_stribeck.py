@@ -2,34 +2,49 @@
 
 from typing import Any
 
-from model.library.effect import Acts, Effect, Parameter
-from model.library.smooth import smooth_sign
+from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.effect import Acts, Effect, Parameter, State
+from model.library.smooth import gaussian
+
+
+def rates(
+    static_ratio: Any,
+    stribeck_m_per_s: Any,
+    presliding_m: Any,
+    bristle: Any,
+    axial_velocity: Any,
+) -> Any:
+    """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2)."""
+    level = 1.0 + (static_ratio - 1.0) * gaussian(axial_velocity / stribeck_m_per_s)
+    return bent(bristle, axial_velocity, presliding_m, level)
 
 
 def pull(
     coulomb_n: Any,
     static_ratio: Any,
     stribeck_m_per_s: Any,
-    switch_m_per_s: Any,
+    presliding_m: Any,
+    bristle_loss_s: Any,
+    bristle: Any,
     axial_velocity: Any,
 ) -> Any:
-    """F_c + (F_s - F_c) / (1 + (v / v_st)^2), against the motion."""
-    ratio = axial_velocity / stribeck_m_per_s
-    size = coulomb_n * (1.0 + (static_ratio - 1.0) / (1.0 + ratio * ratio))
-    return size * smooth_sign(axial_velocity, switch_m_per_s)
+    """F_c (z + t_b z'), z up to F_s / F_c."""
+    rate = rates(static_ratio, stribeck_m_per_s, presliding_m, bristle, axial_velocity)
+    return coulomb_n * (bristle + bristle_loss_s * rate)
 
 
-def steepest(coulomb_n: Any, static_ratio: Any, switch_m_per_s: Any) -> Any:
-    """F_s / v_s, at reversal."""
-    return coulomb_n * static_ratio / switch_m_per_s
+def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
+    """F_c t_b / x_s, of a bristle that sticks."""
+    return coulomb_n * bristle_loss_s / presliding_m
 
 
 EFFECT = Effect(
     name="pulley_stribeck",
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (1 + (F_s/F_c - 1) / (1 + (v/v_st)^2)) v / sqrt(v^2 + v_s^2)",
-    source="Hess & Soom, J. Tribology 112 (1990) 147; Armstrong-Helouvry et al., "
+    equation="T += F_c (z + t_b z'), z' = (v - |v| z/g)/(x_s + |v| t), g = 1 + (F_s/F_c - 1) "
+    "exp(-(v/v_st)^2), t = 50 us",
+    source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
     "Automatica 30 (1994) 1083",
     signature="spike at velocity reversal, negative slope after it; higher odd harmonics than "
     "Coulomb's",
@@ -37,10 +52,13 @@ EFFECT = Effect(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
         Parameter("static_ratio", "1", 1.4, 1.0, 3.0, "F_s / F_c"),
         Parameter("stribeck_m_per_s", "m/s", 8e-3, 1e-3, 0.05, "v_st"),
-        Parameter("switch_m_per_s", "m/s", 2e-3, 1e-4, 0.05, "v_s, width of the reversal"),
+        Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
+        BRISTLE_LOSS,
     ),
+    states=(State("bristle", "1", "z, the bent bristle"),),
     pull=pull,
     steepest=steepest,
+    rates=rates,
     longest_step_s=1e-3,
-    cost="creeps below v_s instead of sticking; four times the steps",
+    cost="|v| is rounded over 0.1 mm/s; four times the steps",
 )

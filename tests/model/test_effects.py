@@ -136,21 +136,23 @@ def test_a_platform_effect_takes_energy(name: str) -> None:
 
 def test_coulomb_is_a_step_at_reversal_whatever_amplitude_and_frequency() -> None:
     effect = library()["pulley_coulomb"]
-    sharp = {"switch_m_per_s": 1e-4}
+    sharp = {"presliding_m": 2e-5}
     for amplitude_m, frequency_hz in ((5e-3, 2.0), (1e-3, 2.0), (5e-3, 6.0)):
         answer = cable_response(effect, sharp, amplitude_m, frequency_hz)
         assert answer.quadrature[1] == pytest.approx(4 * 0.3 / np.pi, rel=0.02)
-        assert answer.share(3) == pytest.approx(1 / 3, abs=0.01)
+        assert answer.share(3) == pytest.approx(1 / 3, abs=0.015)
         assert answer.share(2) < 1e-9
-        assert abs(answer.in_phase[1]) < 1e-9
+        # A reversal takes it some lengths of bristle, and so it is late by sqrt(2 ln 2 x_s / A).
+        late = np.sqrt(2.0 * np.log(2.0) * 2e-5 / amplitude_m)
+        assert answer.in_phase[1] == pytest.approx(late * answer.quadrature[1], rel=0.2)
 
 
 def test_capstan_friction_has_the_second_harmonic_and_scales_with_pretension() -> None:
     effect = library()["pulley_capstan"]
-    loaded = cable_response(effect, {"switch_m_per_s": 1e-4})
+    loaded = cable_response(effect, {"presliding_m": 2e-5})
     theta = 0.03 * 1.5708
     assert loaded.size[2] == pytest.approx(0.85 * theta * 1410 * 5e-3, rel=0.03)
-    more = cable_response(effect, {"switch_m_per_s": 1e-4}, pretension=22.0)
+    more = cable_response(effect, {"presliding_m": 2e-5}, pretension=22.0)
     assert more.quadrature[1] == pytest.approx(2 * loaded.quadrature[1], rel=0.02)
 
 
@@ -166,9 +168,9 @@ def test_stribeck_friction_spikes_at_reversal() -> None:
 def test_presliding_is_stiffness_below_and_friction_above() -> None:
     effect = library()["pulley_presliding"]
     small = cable_response(effect, amplitude_m=1e-5)
-    assert small.in_phase[1] == pytest.approx(0.3 / 3e-4 * 1e-5, rel=0.05)
+    assert small.in_phase[1] == pytest.approx(0.3 / 6e-4 * 1e-5, rel=0.05)
     assert abs(small.quadrature[1]) < 0.1 * small.in_phase[1]
-    large = cable_response(effect)
+    large = cable_response(effect, amplitude_m=1e-2)
     assert large.quadrature[1] == pytest.approx(4 * 0.3 / np.pi, rel=0.07)
     # With most of the give before the pulley, little of the friction reaches the platform.
     far = cable_response(effect, {"far_share": 0.2})
@@ -302,6 +304,9 @@ def test_pulley_inertia_goes_with_the_acceleration() -> None:
     slow, fast = cable_response(effect), cable_response(effect, frequency_hz=4.0)
     assert slow.in_phase[1] == pytest.approx(-0.05 * (4 * np.pi) ** 2 * 5e-3, rel=0.02)
     assert fast.in_phase[1] == pytest.approx(4 * slow.in_phase[1], rel=0.02)
+    # A platform rings at some 10 Hz: what follows late there would damp it, or shake it.
+    rung = cable_response(effect, frequency_hz=10.0)
+    assert abs(rung.quadrature[1]) < 5e-3 * abs(rung.in_phase[1])
 
 
 def test_a_frame_that_gives_way_looks_like_less_stiffness() -> None:

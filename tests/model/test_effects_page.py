@@ -22,8 +22,8 @@ def test_the_page_is_what_the_library_says() -> None:
 
 
 def test_an_effect_is_read_from_the_command_line() -> None:
-    one = ActiveEffect.from_text("pulley_coulomb:coulomb_n=0.4,switch_m_per_s=1e-3@1,2")
-    assert one.values == {"coulomb_n": 0.4, "switch_m_per_s": 1e-3}
+    one = ActiveEffect.from_text("pulley_coulomb:coulomb_n=0.4,presliding_m=1e-4@1,2")
+    assert one.values == {"coulomb_n": 0.4, "presliding_m": 1e-4}
     assert one.columns()["coulomb_n"].tolist() == [0.4, 0.4, 0, 0, 0, 0, 0, 0]
     assert ActiveEffect.from_text("air_drag") == ActiveEffect("air_drag")
 
@@ -32,7 +32,7 @@ def test_an_effect_is_read_from_the_command_line() -> None:
     ("text", "says"),
     [
         ("pulley_colomb", "pulley_coulomb"),
-        ("pulley_coulomb:force=1", "coulomb_n, switch_m_per_s"),
+        ("pulley_coulomb:force=1", "coulomb_n, presliding_m"),
         ("pulley_coulomb:coulomb_n", "a number"),
         ("pulley_coulomb:coulomb_n=-1", "0 to 5 N"),
         ("pulley_coulomb@9", "1 to 8"),

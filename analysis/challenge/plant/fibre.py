@@ -70,6 +70,9 @@ def pull(
     tension += _lossy(p, s, moved, step_s)
     if p[at.RIM] > 0.0:
         tension += _rim(p, s, stretch, speed, step_s)
+    else:
+        # Also while the platform finds its rest: the wheel then stands where the cable is.
+        s[at.WHEEL], s[at.WHEEL + 1] = stretch, speed
     return max(tension, 0.0)
 
 
@@ -177,8 +180,6 @@ def _rim(p: Array, s: Array, stretch: float, speed: float, step_s: float) -> flo
     turn = 2.0 * np.pi * RIM_HZ
     mass = p[at.RIM]
     way, rate = s[at.WHEEL], s[at.WHEEL + 1]
-    if s[at.STARTED] <= 0.0:
-        way, rate = stretch, speed
     force: float = mass * (turn * turn * (stretch - way) + 2.0 * RIM_LOSS * turn * (speed - rate))
     rate += force / mass * step_s
     s[at.WHEEL], s[at.WHEEL + 1] = way + rate * step_s, rate

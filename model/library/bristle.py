@@ -1,0 +1,37 @@
+"""The bristle by which dry friction sticks (LuGre): compiled into every kernel.
+
+Canudas de Wit, Olsson, Astrom & Lischinsky, IEEE Trans. Autom. Control 40 (1995) 419.
+"""
+
+from typing import Any
+
+from model.library.effect import Parameter
+from model.library.smooth import smooth_size
+
+ROUNDING_M_PER_S = 1e-4
+"""Width over which |v| is rounded at reversal."""
+
+CATCHES_S = 5e-5
+"""However fast the cable slips, its bristles take this long to turn over."""
+
+BRISTLE_LOSS = Parameter(
+    "bristle_loss_s", "s", 5e-4, 1e-5, 1e-2, "t_b, loss of the bristle over its stiffness"
+)
+
+
+def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
+    """Give z' = (v - |v| z / g) / (x_s + |v| t).
+
+    Parameters
+    ----------
+    bristle
+        z, how far it is bent, over how far constant friction bends it.
+    slip
+        v, at which the cable slips over its pulley, m/s.
+    presliding_m
+        x_s, the way that bends it, m.
+    level
+        g, the friction at this speed over the constant one.
+    """
+    size = smooth_size(slip, ROUNDING_M_PER_S)
+    return (slip - size * bristle / level) / (presliding_m + CATCHES_S * size)
