@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from analysis.challenge.plant.concealed import Concealed, Parts
 from analysis.challenge.plant.machine import Machine, Offset
-from analysis.challenge.plant.plant import NOTHING, STEP_S, Course, simulate
+from analysis.challenge.plant.plant import FINE_STEP_S, NOTHING, STEP_S, Course, simulate
 from analysis.challenge.plant.record import Measured, Sensing, measure
 from analysis.challenge.plant.sensors import Faults
 from cdpr8.rigfile import Excitation, Rig
@@ -77,10 +77,10 @@ class Case:
         noise
             False: what would be recorded without noise, at the same times.
         step_s
-            Of the integration, s; default: half the usual where the platform is let go and rings.
+            Of the integration, s; default: one that is not seen beside the noise.
         """
         if step_s is None:
-            step_s = STEP_S if run.excitation.ramp_s > 0.0 else 0.5 * STEP_S
+            step_s = FINE_STEP_S
         return self.recorded(run, self.happened(run, step_s), noise=noise)
 
     def happened(self, run: PlannedRun, step_s: float = STEP_S) -> Course:

@@ -278,8 +278,9 @@ def bounded(matrix: Array, right: Array, lows: Array | None, highs: Array | None
             break
         rest = right[free] - matrix[np.ix_(free, ~free)] @ estimate[~free]
         part = matrix[np.ix_(free, free)]
-        ridge = 1e-10 * np.trace(part) / max(len(part), 1) + 1e-300
-        solved = np.linalg.solve(part + ridge * np.eye(len(part)), rest)
+        # Of each number its own: units may differ by ten powers of ten.
+        ridge = 1e-10 * np.diag(part) + 1e-300
+        solved = np.linalg.solve(part + np.diag(ridge), rest)
         held = np.clip(solved, low[free], high[free])
         outside = held != solved
         estimate[free] = held

@@ -13,7 +13,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.places import placed, places_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import BEHIND, FAINT, follow_ring
+from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
@@ -31,7 +31,11 @@ MORE = 2
 EFFORT = 2500.0
 """Whole simulations, after which nothing new is tried."""
 
-EARLY = 0.15
+ARRIVED = 2.5
+"""What was led to the end speaks for every sample, where no more than this is left of the squared
+misfit of one, on average: laws are not exact."""
+
+EARLY = 0.05
 """Where none of the first that were tried can be led this far, as a share of the time, no ring can
 be followed in this recording."""
 
@@ -108,7 +112,7 @@ class FollowedSearch:
     @property
     def arrived(self) -> bool:
         """Whether something was led to the end, near the noise."""
-        return bool(self._led) and self._best.misfit < FAINT * len(self._samples.shares)
+        return bool(self._led) and self._best.misfit < ARRIVED * len(self._samples.shares)
 
     def fitted(self) -> list[Fitted] | None:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""
@@ -118,7 +122,7 @@ class FollowedSearch:
             if way.reached[0] == 1.0:
                 start = _parameters_of(self._system, way)
                 nulls.append(follow_ring(self._system, start, everything=True, near=True))
-        if min(one.misfit for one in (*self._led, *nulls)) > FAINT * count:
+        if min(one.misfit for one in (*self._led, *nulls)) > ARRIVED * count:
             return None
         return _weighed(self._refiner, self._led, min(nulls, key=_cost), count)
 

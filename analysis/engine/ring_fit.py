@@ -21,7 +21,7 @@ from analysis.engine.system import Array, System
 WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
 
-REACH, NARROWEST = 4.0, 0.004
+REACH, NARROWEST = 4.0, 0.001
 """Where more than this is left of a sample in the next window, as where a motion begins, a nearer
 one is led through first, down to this share of the time."""
 
@@ -73,7 +73,7 @@ LONGER, LONGEST = 2.0, 4.0
 FAINT = 1.5
 """A ring is followed as far as no more than this is left of the squared misfit of a sample."""
 
-LOST = 30.0
+LOST = 300.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
 
 GOES_ON = 6.0

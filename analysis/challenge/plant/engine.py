@@ -114,6 +114,8 @@ def compiled_loop() -> Any:
                     qvel[3 + j] += jump[6 + j]
                 for i in range(len(cables)):
                     states[i, at.STRING] += jump[9]
+                    # It was held there and is let go: no wheel and no dashpot has yet to follow.
+                    states[i, at.STARTED] = 0.0
             push(
                 cables, states, g, post_of, posts, qpos, qvel, n * step_s, step_s,
                 kick, wrench, cell[n], attitude,

@@ -68,11 +68,11 @@ def pull(
         rate = p[at.CREEP] * tension / p[at.STIFFNESS] / (p[at.CREEP_TIME] + time_s)
         s[at.CREPT] += rate * step_s
     tension += _lossy(p, s, moved, step_s)
-    if p[at.RIM] > 0.0:
-        tension += _rim(p, s, stretch, speed, step_s)
-    else:
+    if p[at.RIM] <= 0.0 or s[at.STARTED] <= 0.0:
         # Also while the platform finds its rest: the wheel then stands where the cable is.
         s[at.WHEEL], s[at.WHEEL + 1] = stretch, speed
+    if p[at.RIM] > 0.0:
+        tension += _rim(p, s, stretch, speed, step_s)
     return max(tension, 0.0)
 
 

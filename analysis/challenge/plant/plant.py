@@ -17,6 +17,10 @@ Array = NDArray[np.float64]
 STEP_S = 1.25e-4
 """Step of the integration, s: a tone of 20 Hz is out of phase by 0.0013 rad after a second."""
 
+FINE_STEP_S = STEP_S / 4.0
+"""What is recorded is integrated by this: its ring may be a thousand times the noise, and with four
+times this step parameters have to make up for 0.8 of it, rms."""
+
 SETTLING = 18.0
 """How many times the softest tone's radian the platform is given to find its rest."""
 
