@@ -10,8 +10,9 @@ from cdpr8.runfolder import EventKind
 from rig.arrival_clock import ArrivalClock
 from rig.command_columns import Command
 from rig.command_log import CommandLog
+from rig.lines import CommandLine, CommandRow
 from rig.log_source import LOOK_EVERY_S
-from rig.scribe import CommandLine, CommandRow, Scribe
+from rig.scribe import Scribe
 from rig.streams import Span
 from rig.tally import Tally
 

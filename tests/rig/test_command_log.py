@@ -34,8 +34,9 @@ from rig.command_columns import QUANTITIES, CommandColumns, LineReader
 from rig.command_log import CommandLog, open_command_log
 from rig.command_stream import CommandStream
 from rig.ending import Recording
+from rig.lines import CommandLine
 from rig.recorder import record
-from rig.scribe import CommandLine, DirectScribe
+from rig.scribe import DirectScribe
 from rig.simulated.rig import assemble
 from rig.streams import Span
 from rig.tally import Tally
