@@ -120,20 +120,26 @@ def _quick_switches() -> Iterator[None]:
         sys.setswitchinterval(before)
 
 
-def prefer_this_thread() -> None:
+def prefer_this_thread(real_time: bool = True) -> None:
     """Let this thread run before others on a busy computer, where the user may ask for that.
 
     A thread that was woken may have to wait until another's turn is over, 4 ms on many a Linux,
     however little the other is preferred; a real-time one does not (docs/decisions/0013). What it
     starts is not preferred.
+
+    Parameters
+    ----------
+    real_time
+        Whether to ask for that; otherwise, and where it is refused, for a lower niceness.
     """
     if sys.platform == "linux":
         # Linux adds 50 us to each wait to save power.
         ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
         policy = os.SCHED_RR | os.SCHED_RESET_ON_FORK
-        with suppress(OSError):
-            os.sched_setscheduler(0, policy, os.sched_param(PREFERRED_PRIORITY))
-            return
+        if real_time:
+            with suppress(OSError):
+                os.sched_setscheduler(0, policy, os.sched_param(PREFERRED_PRIORITY))
+                return
     if hasattr(os, "setpriority"):
         with suppress(OSError):
             os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), PREFERRED_NICE)
