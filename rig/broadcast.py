@@ -127,7 +127,7 @@ class BroadcastBus(Bus):
         self._heard_s = self._trigger_s + took_s / 2.0 + len(message.TRIGGER) * line.char_s + way_s
         self._proof_due, self._heard = True, False
 
-    def _take(self, station: Station) -> Value:
+    def _take(self, station: Station, following: Station | None = None) -> Value:
         try:
             if self._asked is not station:
                 self._ask(station)
@@ -148,13 +148,15 @@ class BroadcastBus(Bus):
         period_s = station.period_s
         timed = station.address not in self._unsure and self._took_s <= period_s
         self._unsure.discard(station.address)
-        return Value(
+        value = Value(
             reading,
             self._trigger_s,
             received.last_byte_s,
             self._heard_s + period_s / 2.0,
             timed=timed and self._held_up_s <= max(period_s, UNTIMED_S),
         )
+        self._go_on(following)
+        return value
 
     def _failed(self, station: Station) -> None:
         self._unsure.add(station.address)

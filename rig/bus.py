@@ -124,18 +124,11 @@ class Bus:
             The line is gone.
         """
         try:
-            value = self._take(station)
+            return self._take(station, following)
         except BadFrameError:
             self._asked = None
             self._dialogue.settle()
             raise
-        if following is not None:
-            # Bytes that came unasked are the next value's trouble, not this one's.
-            try:
-                self._prepare(following)
-            except BadFrameError as fault:
-                self._dialogue.keep(fault.raw)
-        return value
 
     def bring_back(self, station: Station) -> bool:
         """Try a lost amplifier; one that was reset is configured again before it is trusted.
@@ -236,15 +229,28 @@ class Bus:
         self.transport.write(station.request)
         self._asked = station
 
-    def _take(self, station: Station) -> Value:
+    def _go_on(self, following: Station | None) -> None:
+        """Ask the next one."""
+        if following is None:
+            return
+        # Bytes that came unasked are the next value's trouble, not this one's.
+        try:
+            self._prepare(following)
+        except BadFrameError as fault:
+            self._dialogue.keep(fault.raw)
+
+    def _take(self, station: Station, following: Station | None = None) -> Value:
         if self._asked is not station:
             self._ask(station)
         self._asked = None
         reading, received = self._fetch(station)
-        answer_s, held_up_s = self._answers.began(station, self._asked_s, received)
+        asked_s = self._asked_s
+        # Whatever can wait is done while the next answer is on the line.
+        self._go_on(following)
+        answer_s, held_up_s = self._answers.began(station, asked_s, received)
         return Value(
             reading,
-            self._asked_s,
+            asked_s,
             received.last_byte_s,
             answer_s - station.period_s / 2.0,
             timed=held_up_s <= max(station.period_s, UNTIMED_S),

@@ -10,8 +10,9 @@ from cdpr8.runfolder import EventKind
 from rig.arrival_clock import ArrivalClock
 from rig.command_columns import Command
 from rig.command_log import CommandLog
+from rig.lines import CommandLine, CommandRow
 from rig.log_source import LOOK_EVERY_S
-from rig.scribe import CommandLine, CommandRow, Scribe
+from rig.scribe import Scribe
 from rig.streams import Span
 from rig.tally import Tally
 
@@ -61,23 +62,25 @@ class CommandStream:
         self._take(now_s)
         if now_s >= self._span.end_s:
             if self._rest:
-                self._hand_on([self._rest], now_s - self._span.origin_s)
+                self._hand_on([self._rest], self._run_s())
             return False
         self._clock.sleep_until(min(now_s + LOOK_EVERY_S, self._span.end_s))
         return True
 
     def _take(self, now_s: float) -> None:
-        t_s = now_s - self._span.origin_s
         try:
             data = self._log.source.read(now_s)
         except OSError as error:
             if not self._lost:
                 self._tally.lose("command_log_lost")
-                self._event(t_s, f"{self._log.source.name} is lost: {error.strerror or error}")
+                words = f"{self._log.source.name} is lost: {error.strerror or error}"
+                self._event(self._run_s(), words)
             self._lost = True
             return
         if not data:
             return
+        # After the reading: what was written during it had not come before, and no line is early.
+        t_s = self._run_s()
         if self._lost:
             self._event(t_s, f"{self._log.source.name} sends again")
             self._lost = False
@@ -86,6 +89,9 @@ class CommandStream:
             lines.append(self._rest)
             self._rest = b""
         self._hand_on(lines, t_s)
+
+    def _run_s(self) -> float:
+        return self._clock.monotonic_s() - self._span.origin_s
 
     def _hand_on(self, lines: list[bytes], arrived_s: float) -> None:
         """All lines that came together tell the clock before any of them is timed."""

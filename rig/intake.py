@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 from cdpr8.runfolder import BAD_TENSION, EventKind, TensionStatus
-from rig.scribe import Sample, Scribe
+from rig.lines import Sample
+from rig.scribe import Scribe
 from rig.station import Station, Value
 from rig.tally import Tally
 

@@ -8,7 +8,7 @@ neither a slow disk nor a slow encoder stalls the bus.
 import queue
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
@@ -16,6 +16,7 @@ from typing import Protocol
 from cdpr8.clock import Clock
 from cdpr8.runfolder import EventKind, FrameFlag, RawLog, RunWriter, TableWriter
 from rig.camera import Image
+from rig.lines import CommandLine, Event, Line, Sample, write_line
 from rig.tally import Tally
 
 SYNC_S = 0.25
@@ -29,38 +30,6 @@ BATCH_S = 0.02
 
 FRAMES_WAITING = 64
 """Frames that may wait for the encoder; beyond, frames are dropped, counted and flagged."""
-
-
-@dataclass(frozen=True, slots=True)
-class Sample:
-    """One row of tension.csv; times in s of the run."""
-
-    t_s: float
-    cable: int
-    digits: int
-    tension_n: float
-    status: int
-    request_s: float
-    received_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class CommandRow:
-    """One row of command.csv; `values` are its four quantities by name."""
-
-    t_s: float
-    cable: int
-    values: Mapping[str, float]
-    log_s: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class CommandLine:
-    """One line of the winch controller's log as it came, and what it says."""
-
-    arrived_s: float
-    raw: bytes
-    rows: tuple[CommandRow, ...]
 
 
 class Scribe(Protocol):
@@ -109,16 +78,15 @@ class DirectScribe:
 
     def sample(self, sample: Sample) -> None:
         """Write one sample."""
-        self._writer.tension.append(_row(sample))
+        write_line(self._writer, self._tally, sample)
 
     def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
         """Write one event."""
-        self._writer.event(t_s, kind, detail, cable)
-        self._tally.last_event = f"{kind.value}: {detail}"
+        write_line(self._writer, self._tally, Event(t_s, kind, detail, cable))
 
     def command(self, line: CommandLine) -> None:
         """Write one line of the command log."""
-        _write_command(self._writer, line)
+        write_line(self._writer, self._tally, line)
 
     def frame(self, image: Image, t_s: float, flags: int) -> None:
         """Write one frame."""
@@ -155,7 +123,7 @@ class ThreadedScribe:
         self._writer = writer
         self._tally = tally
         self._clock = clock
-        self._lines: queue.SimpleQueue[Sample | _Event | CommandLine | None] = queue.SimpleQueue()
+        self._lines: queue.SimpleQueue[Line | None] = queue.SimpleQueue()
         self._frames: queue.Queue[_Frame | None] = queue.Queue(FRAMES_WAITING)
         self._dropping = False
         self._hurry = hurry
@@ -173,7 +141,7 @@ class ThreadedScribe:
 
     def event(self, t_s: float, kind: EventKind, detail: str, cable: int | None = None) -> None:
         """Queue one event; never waits."""
-        self._lines.put(_Event(t_s, kind, detail, cable))
+        self._lines.put(Event(t_s, kind, detail, cable))
 
     def command(self, line: CommandLine) -> None:
         """Queue one line of the command log; never waits."""
@@ -248,17 +216,8 @@ class ThreadedScribe:
             line = self._lines.get()
             if line is None:
                 return True
-            self._write_line(line)
+            write_line(self._writer, self._tally, line)
         return False
-
-    def _write_line(self, line: "Sample | _Event | CommandLine") -> None:
-        if isinstance(line, Sample):
-            self._writer.tension.append(_row(line))
-        elif isinstance(line, CommandLine):
-            _write_command(self._writer, line)
-        else:
-            self._writer.event(line.t_s, line.kind, line.detail, line.cable)
-            self._tally.last_event = f"{line.kind.value}: {line.detail}"
 
     def _write_frames(self) -> None:
         synced_s = self._clock.monotonic_s()
@@ -275,44 +234,7 @@ class ThreadedScribe:
 
 
 @dataclass(frozen=True, slots=True)
-class _Event:
-    t_s: float
-    kind: EventKind
-    detail: str
-    cable: int | None
-
-
-@dataclass(frozen=True, slots=True)
 class _Frame:
     image: Image
     t_s: float
     flags: int
-
-
-def _row(sample: Sample) -> dict[str, float | int | str | None]:
-    return {
-        "t_s": sample.t_s,
-        "cable": sample.cable,
-        "digits": sample.digits,
-        "tension_n": sample.tension_n,
-        "status": sample.status,
-        "request_s": sample.request_s,
-        "received_s": sample.received_s,
-    }
-
-
-def _write_command(writer: RunWriter, line: CommandLine) -> None:
-    """The line as it came first: whatever can be made of it."""
-    if writer.command is None or writer.command_text is None:
-        raise ValueError("start.json names no command log, so this run has none")
-    writer.command_text.append(line.arrived_s, line.raw)
-    for row in line.rows:
-        writer.command.append(
-            {
-                "t_s": row.t_s,
-                "cable": row.cable,
-                **row.values,
-                "log_s": row.log_s,
-                "arrived_s": line.arrived_s,
-            }
-        )

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from cdpr8 import CABLES
 from cdpr8.errors import DeviceError
@@ -44,12 +45,12 @@ class Station:
     scaling: Scaling
     period_s: float
 
-    @property
+    @cached_property
     def limit_digits(self) -> float:
         """Digits at which the input leaves the electronics' range: overload without a status."""
         return self.profile.overflow_mv_per_v * self.scaling.digits_per_mv_per_v
 
-    @property
+    @cached_property
     def request(self) -> bytes:
         """What asks for its newest value in bus mode."""
         return message.select(self.address)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from typing import Protocol
 
 BUS_MODE = 16
@@ -149,7 +150,7 @@ class FrameFormat:
             crlf=crlf,
         )
 
-    @property
+    @cached_property  # looked at for each value, while the line waits for the next request
     def length(self) -> int:
         """Bytes of one value on the line."""
         return self.data_bytes + (len(CRLF) if self.crlf else 0)
@@ -174,7 +175,7 @@ class FrameFormat:
         """Two bytes without CR LF are a value wherever one begins to read."""
         return self.crlf or self.data_bytes == 4
 
-    @property
+    @cached_property
     def full_scale(self) -> int:
         """Largest value the format holds; reaching it means overload (section 5)."""
         return FULL_SCALE_24 if self.data_bytes == 4 else FULL_SCALE_16

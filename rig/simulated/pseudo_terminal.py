@@ -1,9 +1,7 @@
 """The simulated bus behind a pseudo-terminal, paced in real time: pyserial's whole path is real."""
 
-import ctypes
 import os
 import select
-import sys
 import threading
 import tty
 from collections import deque
@@ -16,8 +14,11 @@ from rig.simulated.bus import SimulatedBus
 MOST_LATENESS_S = 0.002
 """Lateness of this thread beyond which it is the computer's trouble, not to be made up for."""
 
-AWAKE_S = 60e-6
-"""Before a byte is due this thread no longer sleeps: to be woken takes about as long."""
+AWAKE_S = 150e-6
+"""Before an answer is due this thread no longer sleeps: to be woken may take as long."""
+
+STREAM_AWAKE_S = 60e-6
+"""The same for values sent unasked, which nobody waits for; there are eight such threads."""
 
 STREAM_LOOK_S = 0.005
 """How far ahead values sent unasked are looked for."""
@@ -75,8 +76,8 @@ class PseudoTerminal:
             self._link.unlink(missing_ok=True)
 
     def _serve(self) -> None:
-        _wake_up_in_time()
-        prefer_this_thread()
+        # Eight lines of one node each would take a third of a core more, and nobody waits for them.
+        prefer_this_thread(real_time=len(self._bus.nodes) > 1)
         while True:
             now_s = self._clock.monotonic_s()
             pending = self._bus.speak(now_s + STREAM_LOOK_S)
@@ -107,10 +108,10 @@ class PseudoTerminal:
         return max(started_s, now_s - MOST_LATENESS_S)
 
     def _wait_s(self, until_due_s: float | None) -> float | None:
+        streaming = any(node.powered and node.streaming for node in self._bus.nodes)
         if until_due_s is None:
-            streaming = any(node.powered and node.streaming for node in self._bus.nodes)
             return STREAM_LOOK_S if streaming else None
-        return max(0.0, until_due_s - AWAKE_S)
+        return max(0.0, until_due_s - (STREAM_AWAKE_S if streaming else AWAKE_S))
 
     def _write(self, data: bytes) -> None:
         """A line does not wait: what the reader's buffer does not take is lost (overrun)."""
@@ -118,13 +119,3 @@ class PseudoTerminal:
             os.write(self._master, data)
         except BlockingIOError:
             return
-
-
-def _wake_up_in_time() -> None:
-    """Let this thread's waits end within a microsecond: Linux adds 50 to save power."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
-
-
-_PR_SET_TIMERSLACK = 29
-"""Of <linux/prctl.h>; for the calling thread, in ns."""

@@ -1,6 +1,7 @@
 """What every transport promises, and the settings of an asynchronous line."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, Protocol
 
 from cdpr8.clock import Clock
@@ -22,7 +23,7 @@ class LineSettings:
         """11 with parity, 10 without."""
         return 11 if self.parity == "even" else 10
 
-    @property
+    @cached_property  # the bus looks at it a thousand times a second
     def char_s(self) -> float:
         """How long one character occupies the line, in s."""
         return self.bits_per_char / self.baud

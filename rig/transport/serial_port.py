@@ -90,12 +90,12 @@ class SerialTransport(LineEnd):
 
     def take(self) -> Received:
         """What has come and was not read."""
-        try:
-            waiting = self._port.in_waiting
-        except _LOST as error:
-            raise self._lost(error) from None
-        data, damaged = self._wait(waiting) if waiting else (b"", False)
+        data, damaged = self._waiting()
         return Received(data, self.clock.monotonic_s(), damaged)
+
+    def discard(self) -> bytes:
+        """The bytes of `take`, without its time: this comes before each request."""
+        return self._waiting()[0]
 
     def reopen(self) -> None:
         """Open the port of the same name again.
@@ -112,6 +112,14 @@ class SerialTransport(LineEnd):
         """Close the port."""
         with suppress(*_LOST):
             self._port.close()
+
+    def _waiting(self) -> tuple[bytes, bool]:
+        # Asked, not only read: a port that is gone reads as an empty one.
+        try:
+            waiting = self._port.in_waiting
+        except _LOST as error:
+            raise self._lost(error) from None
+        return self._wait(waiting) if waiting else (b"", False)
 
     def _wait(self, count: int) -> tuple[bytes, bool]:
         """At most `count` bytes within `POLL_S`, and whether one of them was damaged."""

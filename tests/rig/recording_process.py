@@ -19,8 +19,9 @@ from cdpr8.clock import RealClock
 from cdpr8.rigfile import load_rig, packaged_rig_path
 from rig import recorder
 from rig.camera import Image
+from rig.lines import Sample
 from rig.recorder import record
-from rig.scribe import Sample, ThreadedScribe
+from rig.scribe import ThreadedScribe
 from rig.simulated.rig import assemble
 from rig.stop import StopRequest
 

@@ -34,8 +34,9 @@ from rig.command_columns import QUANTITIES, CommandColumns, LineReader
 from rig.command_log import CommandLog, open_command_log
 from rig.command_stream import CommandStream
 from rig.ending import Recording
+from rig.lines import CommandLine
 from rig.recorder import record
-from rig.scribe import CommandLine, DirectScribe
+from rig.scribe import DirectScribe
 from rig.simulated.rig import assemble
 from rig.streams import Span
 from rig.tally import Tally
@@ -249,6 +250,43 @@ def test_arbitrary_lines_end_nothing_and_are_all_kept(data: bytes) -> None:
     assert kept.replace(b"\r", b"") == data.removesuffix(b"\n").replace(b"\r", b"")
     for each in taker.lines:
         assert all(set(row.values) <= set(QUANTITIES) for row in each.rows)
+
+
+def test_a_line_written_while_the_log_is_read_is_not_early() -> None:
+    clock, lines = virtual_clock(), list[CommandLine]()
+
+    class Slow:
+        """A busy computer: time passes between the look and the reading."""
+
+        name = "slow"
+
+        def heading(self) -> tuple[bytes, ...]:
+            return (b"t;L1;L2;E2",)
+
+        def read(self, now_s: float) -> bytes:
+            clock.advance(0.005)
+            written = line(0, clock.now_s)
+            clock.advance(0.001)
+            return written.encode()
+
+        def close(self) -> None: ...
+
+    class Taker:
+        def command(self, line: CommandLine) -> None:
+            lines.append(line)
+
+        def event(self, t_s: float, kind: EventKind, detail: str) -> None: ...
+
+    span = Span(clock.now_s, clock.now_s + 0.1)
+    stream = CommandStream(
+        CommandLog(Slow(), CommandColumns.parse(MAP)), Taker(), Tally(), span, clock
+    )
+    while stream.step():
+        pass
+    assert len(lines) > 3
+    for each in lines:
+        assert each.arrived_s >= each.rows[0].log_s
+        assert each.rows[0].log_s <= each.rows[0].t_s <= each.arrived_s + 1e-9
 
 
 def test_the_quickest_of_late_lines_tells_the_time() -> None:

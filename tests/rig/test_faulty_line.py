@@ -23,7 +23,7 @@ from rig.amplifier.message import TRIGGER
 from rig.broadcast import open_bus
 from rig.bus import Bus
 from rig.intake import Intake
-from rig.scribe import Sample
+from rig.lines import Sample
 from rig.simulated.bus import SimulatedBus
 from rig.simulated.faults import LineFaults
 from rig.streams import BusStream, Span

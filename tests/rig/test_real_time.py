@@ -26,9 +26,10 @@ from cdpr8.rigfile import Rig
 from cdpr8.runfolder import EventKind, FrameFlag, load_run, read_video
 from rig import schedule
 from rig.amplifier.profile import FIT
+from rig.lines import Sample
 from rig.recorder import record
 from rig.schedule import run_in_threads
-from rig.scribe import FRAMES_WAITING, Sample, ThreadedScribe
+from rig.scribe import FRAMES_WAITING, ThreadedScribe
 from rig.simulated.rig import assemble
 from rig.stop import StopRequest
 from rig.tally import Tally
