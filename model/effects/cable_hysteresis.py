@@ -21,12 +21,16 @@ def pull(loop_share: Any, first: Any, second: Any, third: Any, stiffness: Any) -
 
 
 def _held(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
-    """Give z' = x' - (|x'| sgn z + x') (z/y)^8 / 2: all of x' at first, none once |z| is y."""
+    """Give z' = x' - (|x'| sgn z + x') p/(1 + p), p = (z/y)^8: all of x' at first, none at y."""
     speed = smooth_size(elongation_rate, ROUNDING_M_PER_S)
-    square = fibre * fibre / (yield_m * yield_m)
+    square = fibre * fibre
     fourth = square * square
-    bent = speed * smooth_sign(fibre, ROUNDING * yield_m) + elongation_rate
-    return elongation_rate - 0.5 * bent * fourth * fourth
+    level = yield_m * yield_m
+    level = level * level
+    slips = fourth * fourth / (fourth * fourth + level * level)
+    return elongation_rate - slips * (
+        speed * smooth_sign(fibre, ROUNDING * yield_m) + elongation_rate
+    )
 
 
 def rates(
@@ -44,8 +48,8 @@ EFFECT = Effect(
     name="cable_hysteresis",
     title="hysteresis of the cable",
     acts=Acts.CABLE,
-    equation="T += a k (z_1 + z_2 + z_3)/3, z' = x' - (|x'| sgn z + x') (z/y)^8/2, x = Delta L, "
-    "y = x_y/3, x_y, 5 x_y/3",
+    equation="T += a k (z_1 + z_2 + z_3)/3, z' = x' - (|x'| sgn z + x') p/(1 + p), "
+    "p = (z/y)^8, x = Delta L, y = x_y/3, x_y, 5 x_y/3",
     source="strands that yield between 0 and 2 x_y: Iwan, J. Appl. Mech. 33 (1966) 893; each by "
     "Wen, J. Eng. Mech. Div. ASCE 102 (1976) 249, n = 8",
     signature="weak odd harmonics, a loop with sharp tips, rate-independent; tan delta and "

@@ -90,7 +90,8 @@ def _rms(values: np.ndarray) -> float:
 
 
 def test_friction_is_told_with_its_force(tmp_path: Path) -> None:
-    rubbing = ActiveEffect("pulley_coulomb", {"coulomb_n": (0.3, 0.3, 0, 0, 0, 0, 0, 0)})
+    forces = (0.3, 0.3, 0, 0, 0, 0, 0, 0)
+    rubbing = ActiveEffect("pulley_coulomb", {"coulomb_n": forces, "presliding_m": 2e-5})
     found = stiffnesses([by_model(tmp_path / "run", [rubbing], SLOW)])
     assert [one.cable for one in found.cables if one.bias.rubs] == [1, 2]
     for one in found.cables[:2]:

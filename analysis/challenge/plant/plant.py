@@ -115,6 +115,7 @@ def simulate(
         cables,
         np.zeros((len(cables), at.CABLE_STATES)),
         platform,
+        np.zeros((at.POSTS, 6)),
         true.post_of,
         step_s,
     )
@@ -131,6 +132,7 @@ class _Plant:
     cables: Array
     states: Array
     platform: Array
+    posts: Array
     post_of: NDArray[np.int64]
     step_s: float
 
@@ -149,7 +151,7 @@ class _Plant:
             self.states,
             self.platform,
             self.post_of,
-            np.zeros((at.POSTS, 6)),
+            self.posts,
             drive,
             jump_at,
             jump,
@@ -201,10 +203,11 @@ def _settle(plant: _Plant, true: Machine, drive: Array) -> None:
     pace = np.sqrt(softest * stiffest)
     damped[at.DRAG_LINEAR] = 1.4 * pace * true.mass
     damped[at.DRAG_TURNING] = 1.4 * pace * np.linalg.eigvalsh(true.inertia)[1]
-    damped[at.FRAME_GIVE] = 0.0
+    damped[at.FRAME_LOSS] = 1.0
     steps = int(SETTLING / softest * max(1.0, pace / softest) / plant.step_s)
     replace(plant, cables=calm, platform=damped).moved(np.tile(drive, (steps, 1)), -1, NO_JUMP)
     plant.body.data.qvel[:] = 0.0
+    plant.posts[:, 3:] = 0.0
 
 
 def _jump(excitation: Excitation, fault: DriveFault, step_s: float) -> tuple[int, Array]:
