@@ -75,12 +75,13 @@ def faint(
     system
         What is simulated.
     followed
-        About where.
+        About where; where its parameters made up for something, about those that had not begun to.
     candidates
         What to look for; those that are on are not among them.
     progress
         Told of it.
     """
+    followed = followed.about or followed
     samples = Samples(system, everything=True, share=followed.telling)
     (here,) = samples.residuals([followed.point])
     points, steps = followed.neighbours()

@@ -167,7 +167,7 @@ class FollowedSearch:
         best, refiner = self._best, self._refiner
         if len(best.names) >= self._most_causes or self._effort > EFFORT:
             return False
-        found = faint(self._system, best.about or best, others_beside(refiner, best))
+        found = faint(self._system, best, others_beside(refiner, best))
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
         for scored in one_more(found, refiner):

@@ -144,7 +144,7 @@ def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None
     system = refiner.system
     nothing = follow_ring(system, refiner.calibrated.at, everything=True)
     chosen = [one for one in system.candidates if not one.fixed]
-    about = faint(system, nothing.about or nothing, chosen, following)
+    about = faint(system, nothing, chosen, following)
     near = nothing.left < FAINT
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)

@@ -43,5 +43,5 @@ EFFECT = Effect(
     steepest=steepest,
     rates=rates,
     longest_step_s=1e-3,
-    cost="|v| is rounded over 0.1 mm/s; four times the steps",
+    cost="a bristle turns over within 50 us at the least; four times the steps",
 )

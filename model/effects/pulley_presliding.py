@@ -2,9 +2,12 @@
 
 from typing import Any
 
-from model.library.bristle import BRISTLE_LOSS, ROUNDING_M_PER_S, bent
+from model.library.bristle import BRISTLE_LOSS, bent
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import smooth_sign
+
+ROUNDING_M_PER_S = 1e-4
+"""Width over which sgn v is rounded."""
 
 
 def rates(
@@ -75,5 +78,5 @@ EFFECT = Effect(
     rates=rates,
     steepest=steepest,
     longest_step_s=1e-3,
-    cost="|v| is rounded over 0.1 mm/s; four times the steps",
+    cost="a bristle turns over within 50 us at the least; four times the steps",
 )

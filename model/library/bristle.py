@@ -5,11 +5,12 @@ Canudas de Wit, Olsson, Astrom & Lischinsky, IEEE Trans. Autom. Control 40 (1995
 
 from typing import Any
 
-from model.library.effect import Parameter
-from model.library.smooth import smooth_size
+import numpy as np
 
-ROUNDING_M_PER_S = 1e-4
-"""Width over which |v| is rounded at reversal."""
+from model.library.effect import Parameter
+
+CREEP_M_PER_S = 2e-7
+"""|v| is at least this: in a minute at rest a bristle forgets 12 um of its way."""
 
 CATCHES_S = 5e-5
 """However fast the cable slips, its bristles take this long to turn over."""
@@ -33,5 +34,5 @@ def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
     level
         g, the friction at this speed over the constant one.
     """
-    size = smooth_size(slip, ROUNDING_M_PER_S)
+    size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
     return (slip - size * bristle / level) / (presliding_m + CATCHES_S * size)

@@ -84,6 +84,27 @@ def test_a_true_machine_hangs_still_until_the_drive_starts(rig: Rig) -> None:
     assert np.abs(course.tension_n[0] - Machine.from_rig(rig).pretension).max() > 0.01
 
 
+@pytest.mark.parametrize("name", ["frame_compliance", "pulley_inertia"])
+def test_what_is_concealed_hangs_still_too_and_is_let_go_without_a_jolt(
+    rig: Rig, name: str
+) -> None:
+    effect = catalogue()[name]
+    offset = drawn_offset(rig, np.random.default_rng(3))
+    details = dict(effect.draw(np.random.default_rng(5)))
+    cables = () if effect.cables == "none" else tuple(range(1, 9))
+    hidden = Concealed(effect, effect.typical, cables, details).parts(Machine.from_rig(rig)).hidden
+    away = SHORT.model_copy(update={"platform_offset_m": (1e-4, 0.0, 0.0)})
+    course = simulate(rig, away, offset, hidden)
+    rest = course.t_s < SHORT.start_s
+    assert np.ptp(course.tension_n[rest], axis=0).max() < 1e-3
+    usual = simulate(rig, away, offset)
+    soon = (course.t_s > SHORT.start_s) & (course.t_s < SHORT.start_s + 2e-3)
+    for one in (course, usual):
+        jump = one.tension_n[soon] - one.tension_n[rest].mean(axis=0)
+        # 0.1 mm of 1600 N/m, and not what a wheel's grip would pull on top of it.
+        assert np.abs(jump).max() < 0.25
+
+
 @pytest.mark.parametrize("name", sorted(catalogue()))
 def test_every_effect_shows_in_the_record(sound: Case, usual: Measured, name: str) -> None:
     effect = catalogue()[name]

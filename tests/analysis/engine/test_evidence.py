@@ -67,6 +67,15 @@ def test_bounded_minimum_is_that_of_a_general_solver(seed: int) -> None:
     assert worse < 0.02 * np.sum((rows @ expected - right) ** 2)
 
 
+def test_bounded_minimum_does_not_know_units() -> None:
+    generator = np.random.default_rng(1)
+    rows, right = generator.standard_normal((30, 3)), generator.standard_normal(30)
+    unit = np.array([1.0, 1e-7, 1e6])
+    plain = bounded(rows.T @ rows, rows.T @ right, None, None)
+    other = bounded((rows * unit).T @ (rows * unit), (rows * unit).T @ right, None, None)
+    assert other * unit == pytest.approx(plain, rel=1e-6)
+
+
 def test_directions_that_nothing_shows_are_left_out(problem: Problem) -> None:
     doubled = np.hstack([problem.nuisance, problem.nuisance[:, :1], 1e-6 * problem.nuisance])
     kept = directions(doubled, problem.base, problem.used)

@@ -137,7 +137,7 @@ def test_what_cannot_be_followed_further_names_its_cause() -> None:
     found = look(system)
     refiner = Refiner(system, found.lens, found.data, found.calibrated)
     alone = follow_ring(system, np.zeros(1), everything=True)
-    promises = one_more(faint(system, alone.about or alone, system.candidates), refiner)
+    promises = one_more(faint(system, alone, system.candidates), refiner)
     assert promises[0].hypothesis.names == ("damping",)
 
 

@@ -1,0 +1,48 @@
+"""The bristle by which friction sticks, and the smooth laws beside it."""
+
+import numpy as np
+import pytest
+
+from model.library.discovery import library
+from model.library.smooth import gaussian
+from tests.model.harness import cable_response
+
+FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_presliding")
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_below_its_own_length_friction_is_a_spring_that_loses_little(name: str) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 0.02 * numbers["presliding_m"]
+    stuck = cable_response(effect, {"bristle_loss_s": 1e-5}, amplitude_m)
+    assert stuck.in_phase[1] > 20.0 * abs(stuck.quadrature[1])
+    # A spring's force goes with the way, whatever the speed.
+    fast = cable_response(effect, {"bristle_loss_s": 1e-5}, amplitude_m, 20.0)
+    assert fast.in_phase[1] == pytest.approx(stuck.in_phase[1], rel=0.02)
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_the_loss_of_a_bristle_goes_with_the_speed_while_it_sticks(name: str) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 0.02 * numbers["presliding_m"]
+    calm = cable_response(effect, {"bristle_loss_s": 1e-5}, amplitude_m, 10.0)
+    lossy = cable_response(effect, {"bristle_loss_s": 2e-3}, amplitude_m, 10.0)
+    more = lossy.quadrature[1] - calm.quadrature[1]
+    assert more == pytest.approx(2.0 * np.pi * 10.0 * 2e-3 * calm.in_phase[1], rel=0.05)
+
+
+def test_stribecks_curve_is_the_static_force_at_first_and_the_sliding_one_at_last() -> None:
+    effect = library()["pulley_stribeck"]
+    creeping = cable_response(effect, {"presliding_m": 2e-5}, 2e-4, 0.5)
+    assert np.abs(creeping.force).max() == pytest.approx(1.4 * 0.3, rel=0.03)
+    sliding = cable_response(effect, {"presliding_m": 2e-5}, 5e-3, 8.0)
+    fastest = np.argmax(np.abs(sliding.rate))
+    assert abs(sliding.force[fastest]) == pytest.approx(0.3, rel=0.02)
+
+
+def test_gaussian_is_what_it_says_and_never_overflows() -> None:
+    x = np.linspace(-6.0, 6.0, 2001)
+    assert np.abs(gaussian(x) - np.exp(-x * x)).max() < 1e-4
+    assert gaussian(1e100) < 1e-100
