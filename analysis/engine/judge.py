@@ -36,7 +36,7 @@ IMPLAUSIBLE = 4.0
 CERTAIN = 0.9
 """A cause named alone is at least this likely."""
 
-NOISE, DOUBTFUL = 1.06, 0.5
+NOISE, DOUBTFUL = 1.06, 1.0
 """The squared misfit of a sample that noise allows, known as well as a second of rest tells it; and
 how much more leaves it even whether what explains best is what is there."""
 

@@ -13,6 +13,9 @@ from analysis.engine.system import Array, Bundle, Point, Prediction, System
 FASTEST_HZ = 80.0
 """Faster samples are averaged in blocks down to about this."""
 
+OVERHEAD = 0.15
+"""What the shortest simulation takes, of a whole one."""
+
 
 class Samples:
     """The samples by which a ring is followed.
@@ -34,7 +37,7 @@ class Samples:
     ) -> None:
         self.system = system
         self.effort = 0.0
-        """Simulations asked for so far, each as the share of the time that it took."""
+        """Simulations asked for so far, each as the share of a whole one's time that it took."""
         self._mask = [
             seen(one, held=held, everything=everything, share=share) for one in system.bundles
         ]
@@ -52,7 +55,7 @@ class Samples:
         """
         upto, after = self._upto(share), self.shares > share
         asked = [replace(one, upto=upto) for one in points]
-        self.effort += upto * len(asked)
+        self.effort += (OVERHEAD + (1.0 - OVERHEAD) * upto) * len(asked)
         found: list[Array] = []
         for first in range(0, len(points), BATCH):
             found += self.system.simulate(asked[first : first + BATCH], self._residual)
