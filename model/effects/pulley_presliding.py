@@ -49,8 +49,15 @@ def pull(
     stiffness: Any,
 ) -> Any:
     """That times k_span / (k_span + k_far): all of it where all the give is beyond the pulley."""
-    rate = rates(coulomb_n, presliding_m, far_share, bristle, axial_velocity, stiffness)
-    return far_share * coulomb_n * (bristle + bristle_loss_s * rate)
+    return far_share * behind(
+        coulomb_n,
+        presliding_m,
+        far_share,
+        bristle_loss_s,
+        bristle,
+        axial_velocity,
+        stiffness,
+    )
 
 
 def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
