@@ -9,6 +9,7 @@ import hashlib
 import os
 import platform as computer
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -57,14 +58,20 @@ def cache_folder(name: str) -> Path | None:
     return folder
 
 
+_ONE_AT_A_TIME = threading.RLock()
+"""numba has one folder for all: a thread that put it back early would make another write machine code
+to where the user stands."""
+
+
 @contextmanager
 def kept_in(folder: Path | None) -> Iterator[None]:
     """Functions that are made ``njit(cache=True)`` meanwhile are kept in this folder."""
     import numba
 
-    before = numba.config.CACHE_DIR
-    try:
-        numba.config.CACHE_DIR = str(folder or "")
-        yield
-    finally:
-        numba.config.CACHE_DIR = before
+    with _ONE_AT_A_TIME:
+        before = numba.config.CACHE_DIR
+        try:
+            numba.config.CACHE_DIR = str(folder or "")
+            yield
+        finally:
+            numba.config.CACHE_DIR = before

@@ -93,10 +93,9 @@ class FollowedSearch:
             Single causes, the best first: laws of the same things as what comes far are tried too.
         """
         known = {one.names for one in self._led}
-        tried = 0
-        for one in hypotheses:
-            if one.hypothesis.names not in known and (not tried or self._effort < EFFORT):
-                tried += 1
+        fresh = [one for one in hypotheses if one.hypothesis.names not in known]
+        for number, one in enumerate(fresh):
+            if number == 0 or self._effort < EFFORT:
                 self._lead(one.point.nuisance, one.state, near=self._near)
         if not self._led or self._best.reached[0] < EARLY:
             return

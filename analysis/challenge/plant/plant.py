@@ -126,7 +126,10 @@ def simulate(
 
 @dataclass(frozen=True)
 class _Plant:
-    """The body and the arrays that the compiled laws read and write."""
+    """The body and the arrays that the compiled laws read and write.
+
+    `posts` is the give of each post of the frame and its rate, shape (4, 6), m and m/s.
+    """
 
     body: Body
     cables: Array
