@@ -59,8 +59,8 @@ def cache_folder(name: str) -> Path | None:
 
 
 _ONE_AT_A_TIME = threading.RLock()
-"""numba has one folder for all: a thread that put it back early would make another write machine code
-to where the user stands."""
+"""numba has one folder for all: a thread that puts it back early makes another write its machine
+code to where the user stands."""
 
 
 @contextmanager
