@@ -247,7 +247,7 @@ def _empty(one: Bundle, excitation: Excitation, tones: tuple[float, ...]) -> Bun
     if excitation.amplitude_deg == 0.0:
         parts = tuple(replace(part, highest_hz=HOLD_LINES_HZ) for part in parts)
     value = np.zeros((len(t_s), one.value.shape[1]))
-    return replace(one, t_s=t_s, value=value, segments=parts, tones_hz=tones)
+    return replace(one, t_s=t_s, value=value, segments=parts, tones_hz=tones, jitter=None)
 
 
 def write_rig(experiment: Experiment, like: Recording, path: Path) -> Path:

@@ -174,6 +174,8 @@ def _tension(
         t_s = t_s[:whole].reshape(-1, block).mean(axis=1)
         value = value[:whole].reshape(-1, block).mean(axis=1)
     sigma, known = _noise(t_s, value, excitation, shift_s, run)
+    stated = (one.sampling_sigma_s for one in run.start.nodes if one.cable == cable)
+    instant_s = (next(stated, None) or 0.0) / np.sqrt(block)
     if not known:
         notes.append(f"cable {cable}: no rest to take the noise from; {sigma:.4f} N is an estimate")
     return Bundle(
@@ -187,6 +189,7 @@ def _tension(
         kind="tension",
         base_share=BASE_SHARE,
         tones_hz=tuple(tones_hz(Machine.from_rig(run.rig))),
+        jitter=instant_s * np.gradient(value, t_s)[:, None] if instant_s else None,
     )
 
 

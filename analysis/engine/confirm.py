@@ -12,6 +12,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import Search, rings
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Ring, System
+from analysis.engine.whiten import Whiten
 
 RINGS: tuple[Ring, ...] = ("left_out", "as_is")
 
@@ -129,8 +130,5 @@ def sample_errors(system: System, point: Point, held: str = "") -> dict[str, dic
 
 def whitened(bundles: Sequence[Bundle], prediction: list[Array]) -> list[Array]:
     """Residuals of samples in units of their noise, for each bundle, shape (n, m)."""
-    found = []
-    for bundle, seen in zip(bundles, prediction, strict=True):
-        whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
-        found.append((bundle.value - seen) @ whiten.T)
-    return found
+    pairs = zip(bundles, prediction, strict=True)
+    return [Whiten(bundle)(bundle.value - seen) for bundle, seen in pairs]

@@ -95,7 +95,8 @@ def one_more(found: Faint, refiner: Refiner) -> list[Scored]:
     )
     nothing = screen.null().log_score
     best = [one for one in _best(screen, chosen, on) if one.log_score > nothing + ASKS]
-    return [_simpler(screen, one, nothing) for one in best]
+    simpler = (_simpler(screen, one, nothing) for one in best)
+    return sorted(simpler, key=lambda one: -one.log_score)
 
 
 def _simpler(screen: Screen, scored: Scored, nothing: float) -> Scored:

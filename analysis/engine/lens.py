@@ -17,6 +17,7 @@ from scipy.fft import dct
 
 from analysis.engine.system import Array, Bundle, Prediction, Segment
 from analysis.engine.tones import drive_frequency_hz, leaked, rings, rings_near
+from analysis.engine.whiten import covariance_over
 
 HARMONICS = 10
 """The drive's harmonics that are looked at."""
@@ -124,13 +125,13 @@ class Lens:
         rung: list[Array] = []
         group, stretch = 0, -1
         for b, bundle in enumerate(self.bundles):
-            whiten = np.linalg.inv(np.linalg.cholesky(bundle.covariance))
             for s, segment in enumerate(bundle.segments):
                 inside = np.flatnonzero(
                     (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
                 )
                 if inside.size < 3:
                     continue
+                whiten = np.linalg.inv(np.linalg.cholesky(covariance_over(bundle, inside)))
                 every = segment.fundamental_hz is None and segment.highest_hz is None
                 basis: Array | None = None
                 if every:

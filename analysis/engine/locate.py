@@ -14,6 +14,7 @@ from scipy.stats import chi2
 from analysis.engine.evidence import Problem
 from analysis.engine.lens import Labels
 from analysis.engine.system import Array, Bundle
+from analysis.engine.whiten import covariance_over
 
 SIGNIFICANT = 0.01
 """Chance that noise alone makes the strongest finding, all looks counted."""
@@ -125,7 +126,7 @@ def _blocks(bundles: Sequence[Bundle], problem: Problem, residual: Array) -> tup
         t_s = bundle.t_s[inside]
         white = idct(residual[own] / np.sqrt(problem.base[own]), type=2, norm="ortho")
         plain = idct(residual[own], type=2, norm="ortho")
-        noise = float(np.sqrt(bundle.covariance[channel, channel]))
+        noise = float(np.sqrt(covariance_over(bundle, inside)[channel, channel]))
         for first in range(0, len(own), BLOCK):
             block = slice(first, min(first + BLOCK, len(own)))
             count = block.stop - block.start
@@ -156,7 +157,8 @@ def _finding(
     bundle = bundles[labels.bundle[first]]
     channel = int(labels.channel[first])
     segment = bundle.segments[labels.segment[first]]
-    noise = float(np.sqrt(bundle.covariance[channel, channel]))
+    inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
+    noise = float(np.sqrt(covariance_over(bundle, inside)[channel, channel]))
     # A unit vector of n samples of a cosine of amplitude a holds a sqrt(n / 2).
     scale = noise / np.sqrt(labels.samples[first] * (0.5 if labels.line[first] > 0 else 1.0))
     if labels.every[first]:

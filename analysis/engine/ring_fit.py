@@ -25,12 +25,13 @@ REACH, NARROWEST = 4.0, 0.001
 """Where more than this is left of a sample in the next window, as where a motion begins, a nearer
 one is led through first, down to this share of the time."""
 
-EFFORT = 1000.0
-"""Whole simulations, after which no further step is taken: some ten times all differences."""
+EFFORT, PATIENCE = 1000.0, 300.0
+"""Whole simulations after which nothing is led on: some ten times all differences. At the beginning
+of the motion it is less: what is stuck there will not come far."""
 
-STRAIGHT = 0.8
-"""A step that brings less than this of what it promises has left where differences hold: what
-everything does is simulated anew."""
+STRAIGHT = 0.5
+"""A step that brings less than this of what it promises, or as much more, has left where
+differences hold: what everything does is simulated anew."""
 
 STEPS, STEPS_BETWEEN = 15, 5
 """So many steps are taken in each window, at most, and in those that had to be put in between: each
@@ -67,8 +68,8 @@ HALFWAY = 0.5
 DAMPINGS = (10.0, 100.0, 1e3, 1e4, 1e6, 1e8)
 """as if everything were known so much better where it is (Levenberg 1944, Marquardt 1963)."""
 
-LONGER, LONGEST = 2.0, 4.0
-"""One that brings more than it promises is taken so much farther, up to that many times."""
+MORE, LONGER, LONGEST = 1.25, 2.0, 4.0
+"""One that brings so much more than it promises is taken farther, up to that many times."""
 
 FAINT = 1.5
 """A ring is followed as far as no more than this is left of the squared misfit of a sample."""
@@ -111,16 +112,11 @@ def follow_ring(
     samples = Samples(system, held=held, everything=everything)
     way = _Way(samples, Followed(nuisance, state))
     costs: dict[float, float] = {}
-    windows = list(reversed(WINDOWS[-1:] if near else WINDOWS))
-    reached = 0.0
+    share = 0.0
     came: Followed | None = None
     about: Followed | None = None
-    while windows:
-        share = windows[-1]
-        if reached and way.left(share) > REACH and share - reached > NARROWEST:
-            windows.append(0.5 * (reached + share))
-            continue
-        reached = windows.pop()
+    while share < 1.0 and samples.effort < PATIENCE + (EFFORT - PATIENCE) * share:
+        passed, share = share, 1.0 if near else way.window(share)
         best = (ahead or {}).get(share, np.inf)
         for _ in range(STEPS if share in WINDOWS else STEPS_BETWEEN):
             if samples.effort > EFFORT or not way.step(
@@ -130,8 +126,7 @@ def follow_ring(
         if about is None and came is not None and way.strained(share):
             about = replace(came, telling=share)
         came = way.at
-        if share in WINDOWS:
-            costs[share] = way.cost(share)
+        costs |= {one: way.cost(one) for one in WINDOWS if passed < one <= share}
         behind = way.cost(share) > best + BEHIND
         if way.left(share) > (FAINT if state is None else GOES_ON) or behind:
             break
@@ -170,6 +165,27 @@ class _Way:
         self._columns: Array | None = None
         self._steps = np.zeros(0)
 
+    def window(self, passed: float) -> float:
+        """Up to which share of the time to go next, as far as the ring is not lost.
+
+        Parameters
+        ----------
+        passed
+            Share up to which parameters were led.
+        """
+        share = next(one for one in WINDOWS if one > passed)
+        if not passed:
+            return share
+        if self.left(share) < REACH:
+            (whole,) = self._samples.residuals([self.at.point])
+            farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
+            share = max(share, next(farthest, share))
+            whole[self._samples.shares > share] = 0.0
+            self.here, self._seen, self._columns = whole, share, None
+        while share - passed > NARROWEST and self.left(share) > REACH:
+            share = 0.5 * (passed + share)
+        return share
+
     def look(self, share: float) -> None:
         """Simulate up to a share of the time, if that was not done."""
         if share > self._seen:
@@ -179,8 +195,11 @@ class _Way:
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
         self.look(share)
+        return self._mean(self.here, share)
+
+    def _mean(self, residual: Array, share: float) -> float:
         inside = self._samples.shares <= share
-        return float(np.mean(self.here[inside] ** 2)) if inside.any() else 0.0
+        return float(np.mean(residual[inside] ** 2)) if inside.any() else 0.0
 
     def cost(self, share: float) -> float:
         """Squared misfit up to a share of the time, and of the parameters to their prior."""
@@ -258,7 +277,7 @@ class _Way:
                 found = max(found, nearer, key=lambda one: one.fell)
         # Along a valley that turns, differences promise too little: a step is too short.
         times = LONGER
-        while times <= LONGEST and found.fell > promised / STRAIGHT:
+        while times <= LONGEST and found.fell > MORE * promised:
             farther = self._along(times * target, inside, before)
             if farther.fell < found.fell:
                 break

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.engine.sensitivity import BATCH
 from analysis.engine.system import Array, Bundle, Point, Prediction, System
+from analysis.engine.whiten import Whiten
 
 FASTEST_HZ = 80.0
 """Faster samples are averaged in blocks down to about this."""
@@ -41,7 +42,9 @@ class Samples:
         self._mask = [
             seen(one, held=held, everything=everything, share=share) for one in system.bundles
         ]
-        self._whiten = [np.linalg.inv(np.linalg.cholesky(one.covariance)) for one in system.bundles]
+        self._whiten = [
+            Whiten(one, chosen) for one, chosen in zip(system.bundles, self._mask, strict=True)
+        ]
 
     def residuals(self, points: Sequence[Point], share: float = 1.0) -> list[Array]:
         """Of each point, in units of noise, shape (n,).
@@ -80,7 +83,7 @@ class Samples:
         for bundle, chosen, whiten, found in zip(
             self.system.bundles, self._mask, self._whiten, prediction, strict=True
         ):
-            rest = (bundle.value[chosen] - found[chosen]) @ whiten.T
+            rest = whiten(bundle.value[chosen] - found[chosen])
             block = _block(bundle)
             whole = len(rest) // block * block
             rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)

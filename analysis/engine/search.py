@@ -172,7 +172,7 @@ def _by_lines(
     if led is None:
         return _Found(singles, ranked, faint=False)
     alone = [one for one in ranked if len(one.hypothesis.parts) == 1]
-    led.search.follow(_to_follow(null, led.single, ranked), [*led.single, *alone])
+    led.search.follow(_to_follow(null, led.single, ranked), [*alone, *led.single])
     rung = led.search.fitted()
     return _Found(singles, rung or ranked, faint=rung is not None)
 
@@ -198,7 +198,10 @@ def _to_follow(
     What the ring promises, and what is likely without it.
     """
     least = null.log_score - UNLIKELY
-    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
+    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least]
+    # What is left beside one cause is told by the ring; a set may be what a law is made up of.
+    likely.sort(key=lambda one: len(one.hypothesis.parts) > 1)
+    likely = likely[:FOLLOWED]
     # Which places are on, lines tell better, where they tell anything.
     seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
     most = max((one.log_score for one in promises), default=0.0) - FAR_BEHIND

@@ -70,6 +70,9 @@ class Bundle:
     tones_hz
         The system's own tones: what is left of a kick long ago cannot be foretold in phase, and so
         lines near a tone, and all above those that the drive cannot reach, name nothing.
+    jitter
+        What one standard deviation of its instant does to each sample, shape (n, m): the rate at
+        which values change there, times that; None: instants are known.
     """
 
     names: tuple[str, ...]
@@ -82,6 +85,7 @@ class Bundle:
     kind: str = ""
     base_share: float = 0.0
     tones_hz: tuple[float, ...] = ()
+    jitter: Array | None = None
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,6 @@ EFFECT = Effect(
         Parameter("switch_n", "N", 0.05, 1e-3, 1.0, "w"),
     ),
     pull=pull,
-    longest_step_s=1e-3,
-    cost="a tension of w/2 is left where the cable just hangs; four times the steps",
+    longest_step_s=1.6e-3,
+    cost="a tension of w/2 is left where the cable just hangs; twice the steps",
 )

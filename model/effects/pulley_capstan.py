@@ -38,7 +38,8 @@ EFFECT = Effect(
     name="pulley_capstan",
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += T (exp(mu theta (z + t_b z')) - 1), z' = (v - |v| z)/(x_s + |v| t), t = 50 us",
+    equation="T += T (exp(mu theta (z + t_b z')) - 1), "
+    "z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",
@@ -52,6 +53,6 @@ EFFECT = Effect(
     pull=pull,
     steepest=steepest,
     rates=rates,
-    longest_step_s=1e-3,
-    cost="a bristle turns over within 50 us at the least; four times the steps",
+    longest_step_s=1.6e-3,
+    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
 )

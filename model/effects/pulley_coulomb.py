@@ -28,7 +28,7 @@ EFFECT = Effect(
     name="pulley_coulomb",
     title="Coulomb friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z + t_b z'), z' = (v - |v| z)/(x_s + |v| t), t = 50 us",
+    equation="T += F_c (z + t_b z'), z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
     source="Coulomb (1785); sticks as by Canudas de Wit et al., IEEE TAC 40 (1995) 419; Olsson et "
     "al., Eur. J. Control 4 (1998) 176",
     signature="step at velocity reversal; odd harmonics as 1/n; quadrature 4 F_c / pi, whatever "
@@ -42,6 +42,6 @@ EFFECT = Effect(
     pull=pull,
     steepest=steepest,
     rates=rates,
-    longest_step_s=1e-3,
-    cost="a bristle turns over within 50 us at the least; four times the steps",
+    longest_step_s=1.6e-3,
+    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
 )

@@ -69,8 +69,8 @@ EFFECT = Effect(
     name="pulley_presliding",
     title="presliding friction at the pulley, cable elastic on both sides",
     acts=Acts.PULLEY,
-    equation="T += r F_c (z + t_b z'), z' = (s' - |s'| z)/(x_s + |s'| t), s' = r v / (1 + F_c r "
-    "(1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 50 us",
+    equation="T += r F_c (z + t_b z'), z' = (s' - |s'| z)/sqrt(x_s^2 + (s' t)^2), s' = r v / "
+    "(1 + F_c r (1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 0.25 ms",
     source="Dahl, Aerospace Corp. TOR-0158 (1968); Canudas de Wit et al., IEEE TAC 40 (1995) 419",
     signature="rounded reversal; a loop at small amplitude; below x_s it looks like stiffness",
     parameters=(
@@ -84,6 +84,6 @@ EFFECT = Effect(
     behind=behind,
     rates=rates,
     steepest=steepest,
-    longest_step_s=1e-3,
-    cost="a bristle turns over within 50 us at the least; four times the steps",
+    longest_step_s=1.6e-3,
+    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
 )

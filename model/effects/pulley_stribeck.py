@@ -42,8 +42,8 @@ EFFECT = Effect(
     name="pulley_stribeck",
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z + t_b z'), z' = (v - |v| z/g)/(x_s + |v| t), g = 1 + (F_s/F_c - 1) "
-    "exp(-(v/v_st)^2), t = 50 us",
+    equation="T += F_c (z + t_b z'), z' = (v - |v| z/g)/sqrt(x_s^2 + (v t)^2), "
+    "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), t = 0.25 ms",
     source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
     "Automatica 30 (1994) 1083",
     signature="spike at velocity reversal, negative slope after it; higher odd harmonics than "
@@ -59,6 +59,6 @@ EFFECT = Effect(
     pull=pull,
     steepest=steepest,
     rates=rates,
-    longest_step_s=1e-3,
-    cost="a bristle turns over within 50 us at the least; four times the steps",
+    longest_step_s=1.6e-3,
+    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
 )

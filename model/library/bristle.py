@@ -12,8 +12,9 @@ from model.library.effect import Parameter
 CREEP_M_PER_S = 2e-7
 """|v| is at least this: in a minute at rest a bristle forgets 12 um of its way."""
 
-CATCHES_S = 5e-5
-"""However fast the cable slips, its bristles take this long to turn over."""
+CATCHES_S = 2.5e-4
+"""However fast the cable slips, its bristles take this long to turn over: steps need not be shorter
+than what the rest of a machine asks for. About a reversal, where cables are slow, it is nothing."""
 
 BRISTLE_LOSS = Parameter(
     "bristle_loss_s", "s", 5e-4, 1e-5, 1e-2, "t_b, loss of the bristle over its stiffness"
@@ -21,7 +22,7 @@ BRISTLE_LOSS = Parameter(
 
 
 def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
-    """Give z' = (v - |v| z / g) / (x_s + |v| t).
+    """Give z' = (v - |v| z / g) / sqrt(x_s^2 + (v t)^2).
 
     Parameters
     ----------
@@ -35,4 +36,6 @@ def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
         g, the friction at this speed over the constant one.
     """
     size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
-    return (slip - size * bristle / level) / (presliding_m + CATCHES_S * size)
+    caught = CATCHES_S * size
+    way = np.sqrt(presliding_m * presliding_m + caught * caught)
+    return (slip - size * bristle / level) / way

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Self
 
@@ -62,28 +63,33 @@ class ActiveEffect:
         """What the library says of it."""
         return library()[self.name]
 
-    @property
+    @cached_property
     def is_nothing(self) -> bool:
         """Whether every magnitude is zero: it is as if it were not there."""
-        return not any(self.columns()[name].any() for name in self.effect.magnitudes)
+        return not any(self._columns[name].any() for name in self.effect.magnitudes)
 
     def columns(self) -> Mapping[str, Array]:
         """Every parameter for every cable, shape (8,); magnitudes are zero where it does not act.
 
         A parameter that is no cable's own has one value eight times.
         """
+        return self._columns
+
+    @cached_property
+    def _columns(self) -> Mapping[str, Array]:
         columns = {}
         for parameter in self.effect.parameters:
             column = np.full(CABLES, self.values.get(parameter.name, parameter.default))
             if parameter.magnitude and parameter.per_cable and self.cables != ALL_CABLES:
                 elsewhere = np.setdiff1d(ALL_CABLES, self.cables) - 1
                 column[elsewhere] = 0.0
+            column.flags.writeable = False
             columns[parameter.name] = column
         return MappingProxyType(columns)
 
     def numbers(self) -> Mapping[str, float]:
         """One value of each parameter, for effects that are not a cable's own."""
-        return MappingProxyType({name: float(column[0]) for name, column in self.columns().items()})
+        return MappingProxyType({name: float(column[0]) for name, column in self._columns.items()})
 
     def as_table(self) -> dict[str, object]:
         """As the rig file keeps it, below [physics.NAME]."""

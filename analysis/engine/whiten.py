@@ -1,0 +1,52 @@
+"""Residuals in units of their noise: that of values, and that of the instants they are of."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.system import Array, Bundle
+
+
+class Whiten:
+    """Brings residuals of a bundle's samples to units of their noise.
+
+    A value that changes at rate v, and whose instant is known to s, is off by v s as well: all
+    channels of a sample together.
+
+    Parameters
+    ----------
+    bundle
+        The samples.
+    chosen
+        Which of them, shape (n,); None: all.
+    """
+
+    def __init__(self, bundle: Bundle, chosen: NDArray[np.bool_] | None = None) -> None:
+        self._root = np.linalg.inv(np.linalg.cholesky(bundle.covariance)).T
+        self._along: Array | None = None
+        if bundle.jitter is not None:
+            along = (bundle.jitter if chosen is None else bundle.jitter[chosen]) @ self._root
+            power = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+            # (1 + a a^T)^(-1/2) = 1 - (1 - 1 / sqrt(1 + a^2)) a a^T / a^2
+            self._along = along
+            self._shrunk = along * (-np.expm1(-0.5 * np.log1p(power)) / power)[:, None]
+
+    def __call__(self, residual: Array) -> Array:
+        """Of the chosen samples, shape (n, m)."""
+        white = residual @ self._root
+        if self._along is not None:
+            white -= (white * self._along).sum(axis=1, keepdims=True) * self._shrunk
+        return np.asarray(white)
+
+
+def covariance_over(bundle: Bundle, inside: NDArray[np.bool_] | NDArray[np.int64]) -> Array:
+    """Covariance of the noise of one sample, that of instants included, on average, shape (m, m).
+
+    Parameters
+    ----------
+    bundle, inside
+        Over which samples of it.
+    """
+    if bundle.jitter is None:
+        return bundle.covariance
+    jitter = bundle.jitter[inside]
+    return np.asarray(bundle.covariance + jitter.T @ jitter / max(len(jitter), 1))
