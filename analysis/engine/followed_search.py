@@ -11,7 +11,7 @@ from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
-from analysis.engine.places import placed, places_of
+from analysis.engine.places import instead
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -35,9 +35,9 @@ ARRIVED = 2.5
 """What was led to the end speaks for every sample, where no more than this is left of the squared
 misfit of one, on average: laws are not exact."""
 
-EARLY = 0.05
-"""Where none of the first that were tried can be led this far, as a share of the time, no ring can
-be followed in this recording."""
+EARLY = 0.03
+"""Where none of the first that were tried can be led so much farther than parameters alone, as a
+share of the time, the ring tells nothing of what is left out."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -92,20 +92,21 @@ class FollowedSearch:
         others
             Single causes, the best first: laws of the same things as what comes far are tried too.
         """
-        known = {one.names for one in self._led}
-        fresh = [one for one in hypotheses if one.hypothesis.names not in known]
-        for number, one in enumerate(fresh):
+        for number, one in enumerate(self._fresh(hypotheses)):
             if number == 0 or self._effort < EFFORT:
                 self._lead(one.point.nuisance, one.state, near=self._near)
-        if not self._led or self._best.reached[0] < EARLY:
+        if not self._led:
+            return
+        if not self._near and self._best.share < min(self._nothing.share + EARLY, 1.0):
             return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
-        for one in self._kin(others):
+        for one in self._fresh(self._kin(others)):
             if (not self._near or one.log_score > least) and self._effort < EFFORT:
-                # Where one law was led to the end, the parameters are those of its kind as well.
-                from_end = not self._near and self._best.share == 1.0
-                nuisance = self._best.nuisance if from_end else one.point.nuisance
-                self._lead(nuisance, one.state, near=self._near)
+                self._lead(one.point.nuisance, one.state, near=self._near)
+                if self._best.share == 1.0 and not self._near:
+                    break
+        if not self._near:
+            self._lead_kin()
         for _ in range(self._most_causes - 1):
             if not self._one_more():
                 break
@@ -146,6 +147,26 @@ class FollowedSearch:
         self._led.append(found)
         if self._progress is not None:
             self._progress(len(self._led), len(self._led))
+
+    def _fresh(self, hypotheses: Sequence[Fitted]) -> list[Fitted]:
+        """Those that were not led to the end before."""
+        known = {one.names for one in self._led if one.share == 1.0}
+        return [one for one in hypotheses if one.hypothesis.names not in known]
+
+    def _lead_kin(self) -> None:
+        """Where one law alone was led to the end, others of its kind are led from there."""
+        best = self._best
+        if best.state is None or best.share < 1.0 or len(best.names) > 1:
+            return
+        (known,) = best.names
+        candidates = self._refiner.candidates
+        arrived = {one.names for one in self._led if one.share == 1.0}
+        for name, one in candidates.items():
+            kin = one.family and one.family == candidates[known].family
+            if kin and name != known and (name,) not in arrived and self._effort < EFFORT:
+                state = instead(best.state, known, name)
+                if state is not None:
+                    self._lead(best.nuisance, state, near=True)
 
     def _kin(self, others: Sequence[Fitted]) -> list[Fitted]:
         """Other laws of the things that came as far as the best."""
@@ -197,12 +218,12 @@ class FollowedSearch:
 
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
         """Lead another law in the same places, from where one of its kind has come to."""
-        state = State.of(scored, self._refiner.candidates)
-        if law.state is not None:
-            (name,) = set(scored.hypothesis.names) - set(known)
-            (like,) = set(law.names) - set(known)
-            state = placed(state, name, places_of(law.state, like))
-        self._lead(law.nuisance, state, near=False)
+        (name,) = set(scored.hypothesis.names) - set(known)
+        (like,) = set(law.names) - set(known)
+        state = None if law.state is None else instead(law.state, like, name)
+        if state is None:
+            state = State.of(scored, self._refiner.candidates)
+        self._lead(law.nuisance, state, near=law.share == 1.0)
 
 
 def _weighed(
@@ -218,7 +239,8 @@ def _weighed(
     explained = _cost(nothing) - min(_cost(best), _cost(nothing))
     hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
     fitted = []
-    for one in (*led, nothing):
+    closest = {one.names: one for one in sorted(led, key=_cost, reverse=True)}
+    for one in (*closest.values(), nothing):
         state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
         logs = []
         for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):

@@ -1,27 +1,44 @@
-"""Where a candidate acts, such as on which cables."""
+"""Another law of the same thing, in the same places."""
 
-from dataclasses import replace
+import numpy as np
 
+from analysis.engine.hypothesis import Part
 from analysis.engine.state import State
 
-LITTLE = 0.1
-"""Of the size that a term is screened at: with so much it starts in a new place."""
 
+def instead(state: State, known: str, other: str) -> State | None:
+    """A hypothesis with another law in the place of one that is on.
 
-def places_of(state: State, name: str) -> frozenset[str]:
-    """The places where a candidate is on."""
-    on = set(state.hypothesis.parts[name].terms)
-    return frozenset(one.place for one in state.candidates[name].terms if one.name in on)
+    It is as strong as the one before: each of its magnitudes is as many of the sizes that it is
+    screened at. Numbers of shape that both have stay.
 
+    Parameters
+    ----------
+    state
+        With the law that is known.
+    known, other
+        The two candidates.
 
-def placed(state: State, name: str, places: frozenset[str]) -> State:
-    """With a candidate in some places; the same state, where it has no such places."""
-    terms = [one for one in state.candidates[name].terms if one.place in places]
-    if {one.place for one in terms} != places:
-        return state
-    part = state.hypothesis.parts[name]
-    chosen = tuple(one.name for one in terms)
-    shared = part.shared and set(chosen) == set(part.terms)
-    hypothesis = state.hypothesis.plus(name, replace(part, terms=chosen, shared=shared))
-    little = {(name, one.name): LITTLE * one.step for one in terms}
-    return State.at(hypothesis, little | state.term_values(), state.candidates)
+    Returns
+    -------
+    State or None
+        None: the other law has no such places.
+    """
+    part, old, new = state.hypothesis.parts[known], state.candidates[known], state.candidates[other]
+    values = state.term_values()
+    sizes: dict[str, list[float]] = {}
+    for term in old.terms:
+        if term.name in part.terms:
+            sizes.setdefault(term.place, []).append(values[known, term.name] / term.step)
+    terms = [one for one in new.terms if one.place in sizes]
+    if {one.place for one in terms} != set(sizes):
+        return None
+    shapes = {
+        one.name: float(np.clip(part.shapes.get(one.name, one.default), one.low, one.high))
+        for one in new.shapes
+    }
+    shared = part.shared and new.shareable
+    hypothesis = state.hypothesis.without(known)
+    hypothesis = hypothesis.plus(other, Part(tuple(one.name for one in terms), shared, shapes))
+    strong = {(other, one.name): float(np.mean(sizes[one.place])) * one.step for one in terms}
+    return State.at(hypothesis, values | strong, state.candidates)

@@ -174,8 +174,6 @@ class _Way:
             Share up to which parameters were led.
         """
         share = next(one for one in WINDOWS if one > passed)
-        if not passed:
-            return share
         if self.left(share) < REACH:
             (whole,) = self._samples.residuals([self.at.point])
             farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
