@@ -17,9 +17,6 @@ from analysis.engine.system import Array, Candidate
 SINGLES, PARENTS, PAIRS = 8, 3, 6
 """So many hypotheses are kept, and so many looked beside."""
 
-ASKS = 4.0
-"""One cause more is worth a try where the ring promises this rise of the score."""
-
 NEARLY = 0.9
 """All places alike are followed where they promise this share of what the best places do."""
 
@@ -79,8 +76,8 @@ def others_beside(refiner: Refiner, led: Followed) -> list[Candidate]:
     ]
 
 
-def one_more(found: Faint, refiner: Refiner) -> list[Scored]:
-    """One cause more than is on, where the ring promises something, the best first."""
+def one_more(found: Faint, refiner: Refiner, asks: float = 4.0) -> list[Scored]:
+    """One cause more than is on, where the ring promises so much higher a score, the best first."""
     chosen = {one.name: one for one in others_beside(refiner, found.followed)}
     state = found.followed.state
     on = Hypothesis() if state is None else state.hypothesis
@@ -94,7 +91,7 @@ def one_more(found: Faint, refiner: Refiner) -> list[Scored]:
         state=state,
     )
     nothing = screen.null().log_score
-    best = [one for one in _best(screen, chosen, on) if one.log_score > nothing + ASKS]
+    best = [one for one in _best(screen, chosen, on) if one.log_score > nothing + asks]
     simpler = (_simpler(screen, one, nothing) for one in best)
     return sorted(simpler, key=lambda one: -one.log_score)
 

@@ -76,14 +76,18 @@ class Finder:
         self._tell = tell
         self._fitted: dict[tuple[object, ...], Fitted] = {}
 
-    def find(self, null: Fitted, most_causes: int) -> list[Scored]:
-        """Singles, pairs and more, from nothing on; single candidates to first order."""
-        anew = self._refiner.anew
+    def singles(self, null: Fitted) -> list[Scored]:
+        """Single causes, the best of them fitted; all of them to first order, the best first."""
         promised = self.screen(null)
         self.keep(null)
         self.fit_best(promised, SINGLES, "fitting single causes", HOPELESS)
-        if not anew:
+        if not self._refiner.anew:
             self.widen(null, WIDENED)
+        return [one for _, one in promised]
+
+    def sets(self, most_causes: int) -> None:
+        """Pairs and more, beside the single causes that were fitted."""
+        anew = self._refiner.anew
         for size in range(1, most_causes):
             parents = self._parents(size)
             found: list[Promised] = []
@@ -96,7 +100,6 @@ class Finder:
             self.fit_best(found, most, f"fitting sets of {size + 1}", HOPELESS_MORE)
             if self.ranked()[0].hypothesis.parts.keys() == parents[0].hypothesis.parts.keys():
                 break
-        return [one for _, one in promised]
 
     def _parents(self, size: int) -> list[Fitted]:
         """The best of so many candidates, beside which one more is looked for."""

@@ -11,7 +11,7 @@ from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
-from analysis.engine.places import instead
+from analysis.engine.kin import lead_instead
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -38,6 +38,10 @@ misfit of one, on average: laws are not exact."""
 EARLY = 0.03
 """Where none of the first that were tried can be led so much farther than parameters alone, as a
 share of the time, the ring tells nothing of what is left out."""
+
+ASKS, EXPLAINS = 4.0, 0.2
+"""One cause more is tried where it promises to raise the score by this, and to explain this share of
+what a law that was led to the end leaves beyond noise."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -93,8 +97,9 @@ class FollowedSearch:
             Single causes, the best first: laws of the same things as what comes far are tried too.
         """
         for number, one in enumerate(self._fresh(hypotheses)):
-            if number == 0 or self._effort < EFFORT:
-                self._lead(one.point.nuisance, one.state, near=self._near)
+            if number > 0 and (self._effort > EFFORT or self._is_kin(one)):
+                continue
+            self._lead(one.point.nuisance, one.state, near=self._near)
         if not self._led:
             return
         if not self._near and self._best.share < min(self._nothing.share + EARLY, 1.0):
@@ -144,6 +149,9 @@ class FollowedSearch:
             if sharper is not state:
                 found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
                 self._effort += found.effort
+        self._keep(found)
+
+    def _keep(self, found: Followed) -> None:
         self._led.append(found)
         if self._progress is not None:
             self._progress(len(self._led), len(self._led))
@@ -152,6 +160,14 @@ class FollowedSearch:
         """Those that were not led to the end before."""
         known = {one.names for one in self._led if one.share == 1.0}
         return [one for one in hypotheses if one.hypothesis.names not in known]
+
+    def _is_kin(self, fitted: Fitted) -> bool:
+        """Whether it will be led from where another law of its kind came to the end."""
+        names = (self._best.names, fitted.hypothesis.names)
+        if self._near or self._best.share < 1.0 or any(len(one) != 1 for one in names):
+            return False
+        one, other = (self._refiner.candidates[name].family for (name,) in names)
+        return bool(one) and one == other
 
     def _lead_kin(self) -> None:
         """Where one law alone was led to the end, others of its kind are led from there."""
@@ -164,9 +180,9 @@ class FollowedSearch:
         for name, one in candidates.items():
             kin = one.family and one.family == candidates[known].family
             if kin and name != known and (name,) not in arrived and self._effort < EFFORT:
-                state = instead(best.state, known, name)
-                if state is not None:
-                    self._lead(best.nuisance, state, near=True)
+                found = lead_instead(self._samples, best, known, name)
+                if found is not None:
+                    self._keep(found)
 
     def _kin(self, others: Sequence[Fitted]) -> list[Fitted]:
         """Other laws of the things that came as far as the best."""
@@ -192,7 +208,7 @@ class FollowedSearch:
         found = faint(self._system, best, others_beside(refiner, best))
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
-        for scored in one_more(found, refiner):
+        for scored in one_more(found, refiner, self._asks(best, float(found.problem.base[0]))):
             (added,) = set(scored.hypothesis.names) - set(best.names)
             promised.setdefault(family[added], []).append(scored)
 
@@ -216,14 +232,22 @@ class FollowedSearch:
                 self._lead_like(tried[kind], scored, best.names)
         return True
 
+    def _asks(self, best: Followed, noise: float) -> float:
+        """By how much one cause more must raise the score to be worth a try."""
+        if best.share < 1.0:
+            return ASKS
+        beyond = best.misfit - len(self._samples.shares)
+        return ASKS + EXPLAINS * max(beyond, 0.0) / (2.0 * noise)
+
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
         """Lead another law in the same places, from where one of its kind has come to."""
         (name,) = set(scored.hypothesis.names) - set(known)
         (like,) = set(law.names) - set(known)
-        state = None if law.state is None else instead(law.state, like, name)
-        if state is None:
-            state = State.of(scored, self._refiner.candidates)
-        self._lead(law.nuisance, state, near=law.share == 1.0)
+        found = lead_instead(self._samples, law, like, name) if law.share == 1.0 else None
+        if found is not None:
+            self._keep(found)
+        else:
+            self._lead(law.nuisance, State.of(scored, self._refiner.candidates), near=False)
 
 
 def _weighed(

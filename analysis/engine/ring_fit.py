@@ -51,7 +51,11 @@ THERE = 1.02
 """On the way, a squared misfit of a sample below this, on average, needs no further step."""
 
 WORTH_A_STEP = 2.0
-"""Nor one that promises less than this of the squared misfit,"""
+"""Nor one that promises less than this of the squared misfit;"""
+
+WORTH_ANEW = 5.0
+"""nor what everything does simulated anew, where the last step that began so brought less than this
+of it;"""
 
 WORTH_ON_THE_WAY = 0.003
 """or, in a window that is not the last, than this share of it."""
@@ -93,6 +97,7 @@ def follow_ring(
     everything: bool = False,
     near: bool = False,
     ahead: Mapping[float, float] | None = None,
+    most: float = EFFORT,
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -108,6 +113,8 @@ def follow_ring(
         The phase is near enough for the whole of the time at once.
     ahead
         Costs of another hypothesis: what stays far behind it is given up.
+    most
+        Whole simulations, after which no step is begun.
     """
     samples = Samples(system, held=held, everything=everything)
     way = _Way(samples, Followed(nuisance, state))
@@ -115,11 +122,11 @@ def follow_ring(
     share = 0.0
     came: Followed | None = None
     about: Followed | None = None
-    while share < 1.0 and samples.effort < PATIENCE + (EFFORT - PATIENCE) * share:
+    while share < 1.0 and samples.effort < PATIENCE + (most - PATIENCE) * share:
         passed, share = share, 1.0 if near else way.window(share)
         best = (ahead or {}).get(share, np.inf)
         for _ in range(STEPS if share in WINDOWS else STEPS_BETWEEN):
-            if samples.effort > EFFORT or not way.step(
+            if samples.effort > most or not way.step(
                 share, lost=LOST if costs or near else np.inf, best=best
             ):
                 break
@@ -164,6 +171,7 @@ class _Way:
         self._seen = 0.0
         self._columns: Array | None = None
         self._steps = np.zeros(0)
+        self._settled = False
 
     def window(self, passed: float) -> float:
         """Up to which share of the time to go next, as far as the ring is not lost.
@@ -179,7 +187,7 @@ class _Way:
             farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
-            self.here, self._seen, self._columns = whole, share, None
+            self.here, self._seen, self._columns, self._settled = whole, share, None, False
         while share - passed > NARROWEST and self.left(share) > REACH:
             share = 0.5 * (passed + share)
         return share
@@ -188,7 +196,7 @@ class _Way:
         """Simulate up to a share of the time, if that was not done."""
         if share > self._seen:
             (self.here,) = self._samples.residuals([self.at.point], share)
-            self._seen, self._columns = share, None
+            self._seen, self._columns, self._settled = share, None, False
 
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
@@ -236,18 +244,23 @@ class _Way:
         if near or not float(here @ here) < lost * len(here):
             return False
         fresh = self._columns is None
+        if fresh and self._settled:
+            return False
         if self._columns is None:
             points, self._steps = self.at.neighbours()
             rows = np.stack(self._samples.residuals(points, self._seen))
             self._columns = (self.here - rows) / self._steps[:, None]
-        if self._step(inside, best):
+        fell = self._step(inside, best)
+        self._settled |= fresh and fell < WORTH_ANEW
+        if fell > 0.0:
             return True
-        if fresh:
+        if fresh or self._settled:
             return False
         self._columns = None
         return self.step(share, lost, best)
 
-    def _step(self, inside: NDArray[np.bool_], best: float) -> bool:
+    def _step(self, inside: NDArray[np.bool_], best: float) -> float:
+        """By how much the cost fell; nothing: there is no step."""
         assert self._columns is not None
         at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
         # What a short window does not tell of a law stays about where it is (Levenberg 1944).
@@ -263,7 +276,7 @@ class _Way:
         before, promised = float(here @ here + at @ at), float(right @ target)
         worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
         if promised < max(worth, CATCHES_UP * (before - best)):
-            return False
+            return 0.0
         found = self._along(target, inside, before)
         if found.fell < HALFWAY * promised:
             # Differences hold over less than that: shorter, and least along what tells least.
@@ -281,11 +294,11 @@ class _Way:
                 break
             found, times = farther, times * LONGER
         if found.fell <= 0.0:
-            return False
+            return 0.0
         self._learn(found.there, found.residual)
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
             self._columns = None
-        return True
+        return found.fell
 
     def _along(self, change: Array, inside: NDArray[np.bool_], before: float) -> "_Step":
         """What a step comes to."""

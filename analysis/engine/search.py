@@ -156,7 +156,7 @@ def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None
         screened, faintly = promised, []
         single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
-    led.follow(_to_follow(null, single, single if near else ()), single)
+    led.follow(_to_follow(null, single, single) if near else single[:1], single)
     if near or led.arrived:
         return _Found(screened, led.fitted() or faintly, faint=True)
     return _Found((), (), faint=False, led=_Led(led, single))
@@ -167,12 +167,17 @@ def _by_lines(
 ) -> _Found:
     """By lines, the ring left out; what is found there is led to the phase of the ring, if any."""
     finder = Finder(refiner, _terms(refiner, tell), tell)
-    singles = finder.find(null, most_causes)
+    singles = finder.singles(null)
+    alone = [one for one in finder.ranked() if one.hypothesis.parts]
+    if led is not None:
+        led.search.follow(_to_follow(null, led.single, alone), [*alone, *led.single])
+    if led is None or not led.search.arrived:
+        finder.sets(most_causes)
     ranked = finder.ranked()
     if led is None:
         return _Found(singles, ranked, faint=False)
-    alone = [one for one in ranked if len(one.hypothesis.parts) == 1]
-    led.search.follow(_to_follow(null, led.single, ranked), [*alone, *led.single])
+    if not led.search.arrived:
+        led.search.follow(_to_follow(null, (), ranked), alone)
     rung = led.search.fitted()
     return _Found(singles, rung or ranked, faint=rung is not None)
 
@@ -198,10 +203,7 @@ def _to_follow(
     What the ring promises, and what is likely without it.
     """
     least = null.log_score - UNLIKELY
-    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least]
-    # What is left beside one cause is told by the ring; a set may be what a law is made up of.
-    likely.sort(key=lambda one: len(one.hypothesis.parts) > 1)
-    likely = likely[:FOLLOWED]
+    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
     # Which places are on, lines tell better, where they tell anything.
     seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
     most = max((one.log_score for one in promises), default=0.0) - FAR_BEHIND

@@ -1,0 +1,103 @@
+"""Kin: another law of the same thing, from where one law was led to the end.
+
+Where one law of friction explains a recording, another is near: in the same places, about as
+strong, with the same parameters. How much worse it is, is told within a few steps.
+"""
+
+import numpy as np
+
+from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import Part
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.state import State
+from analysis.engine.system import Array
+
+STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.35, 1.25, 1.6, 2.0)
+"""Sizes that laws are screened at are alike to within so much."""
+
+FIRST_PART = 0.2
+"""Share of the time that tells how strong the other law is."""
+
+EFFORT = 400.0
+"""Whole simulations for one of kin: some three times all differences."""
+
+
+def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Followed | None:
+    """Lead a hypothesis with another law in the place of one, from where that one has come to.
+
+    Parameters
+    ----------
+    samples
+        By which it is led.
+    law
+        Led to the end.
+    known, other
+        The law that is on, and the other.
+
+    Returns
+    -------
+    Followed or None
+        None: the other law has no such places.
+    """
+    if law.state is None:
+        return None
+    state = instead(law.state, known, other)
+    if state is None:
+        return None
+    state = _as_strong(samples, law.nuisance, state)
+    return follow_ring(
+        samples.system,
+        law.nuisance,
+        state,
+        everything=True,
+        near=True,
+        ahead=law.costs,
+        most=EFFORT,
+    )
+
+
+def _as_strong(samples: Samples, nuisance: Array, state: State) -> State:
+    """With magnitudes that leave least of the first part."""
+    tried = [state.smaller(factor) for factor in STRENGTHS]
+    points = [Followed(nuisance, one).point for one in tried]
+    found = samples.residuals(points, FIRST_PART)
+    return tried[int(np.argmin([one @ one for one in found]))]
+
+
+def instead(state: State, known: str, other: str) -> State | None:
+    """A hypothesis with another law in the place of one that is on.
+
+    It is as strong as the one before: each of its magnitudes is as many of the sizes that it is
+    screened at. Numbers of shape that both have stay.
+
+    Parameters
+    ----------
+    state
+        With the law that is known.
+    known, other
+        The two candidates.
+
+    Returns
+    -------
+    State or None
+        None: the other law has no such places.
+    """
+    part, old, new = state.hypothesis.parts[known], state.candidates[known], state.candidates[other]
+    values = state.term_values()
+    sizes: dict[str, list[float]] = {}
+    for term in old.terms:
+        if term.name in part.terms:
+            sizes.setdefault(term.place, []).append(values[known, term.name] / term.step)
+    terms = [one for one in new.terms if one.place in sizes]
+    if {one.place for one in terms} != set(sizes):
+        return None
+    shapes = {
+        one.name: float(np.clip(part.shapes.get(one.name, one.default), one.low, one.high))
+        for one in new.shapes
+    }
+    shared = part.shared and new.shareable
+    hypothesis = state.hypothesis.without(known)
+    hypothesis = hypothesis.plus(other, Part(tuple(one.name for one in terms), shared, shapes))
+    strong = {(other, one.name): float(np.mean(sizes[one.place])) * one.step for one in terms}
+    return State.at(hypothesis, values | strong, state.candidates)
