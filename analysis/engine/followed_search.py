@@ -40,8 +40,8 @@ EARLY = 0.03
 share of the time, the ring tells nothing of what is left out."""
 
 ASKS, EXPLAINS = 4.0, 0.2
-"""One cause more is tried where it promises to raise the score by this, and to explain this share of
-what a law that was led to the end leaves beyond noise."""
+"""One cause more is tried where it promises to raise the score by this, and to explain this share
+of what a law that was led to the end leaves beyond noise."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
