@@ -39,7 +39,7 @@ EARLY = 0.03
 """Where none of the first that were tried can be led so much farther than parameters alone, as a
 share of the time, the ring tells nothing of what is left out."""
 
-ASKS, EXPLAINS = 4.0, 0.2
+ASKS, EXPLAINS = 4.0, 0.05
 """One cause more is tried where it promises to raise the score by this, and to explain this share
 of what a law that was led to the end leaves beyond noise."""
 

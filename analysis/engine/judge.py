@@ -24,8 +24,9 @@ that explain it: the more there is, the more their form counts."""
 SIMPLER = 0.7
 """Of laws of one family, each number of shape takes this off the logarithm of odds."""
 
-NEGLIGIBLE = 0.02
-"""A magnitude below this share of its usual size is nothing."""
+NEGLIGIBLE, STANDS_OUT = 0.02, 15.0
+"""A magnitude below this share of its usual size is nothing, unless with it the score is so much
+higher than without anything."""
 
 SECOND = 0.8
 """A cause beside the first is reported if it is present with this probability."""
@@ -36,9 +37,13 @@ IMPLAUSIBLE = 4.0
 CERTAIN = 0.9
 """A cause named alone is at least this likely."""
 
-NOISE, DOUBTFUL = 1.06, 1.0
+NOISE, DOUBTFUL = 1.06, 8.0
 """The squared misfit of a sample that noise allows, known as well as a second of rest tells it; and
-how much more leaves it even whether what explains best is what is there."""
+how much more leaves it even whether what explains best is what is there, for one whose law has this
+for an error of form: what is known exactly must explain to the noise."""
+
+SUREST = 0.1
+"""As much more leaves it even where a law has no error of form."""
 
 MOST_DOUBT = 0.6
 """What was led to the ring's phase and is far from the noise is more often wrong than right."""
@@ -89,13 +94,15 @@ def judge(
     lost
         The system rings, and no hypothesis could be led to the ring's phase.
     """
-    scores = np.array(
-        [-np.inf if negligible(one, candidates) else _plausible_score(one) for one in fitted]
-    )
+    scores = np.array([_plausible_score(one) for one in fitted])
     nothing = max(
         (score for score, one in zip(scores, fitted, strict=True) if not one.hypothesis.parts),
-        default=scores.max(),
+        default=-np.inf,
     )
+    for i, one in enumerate(fitted):
+        if negligible(one, candidates) and scores[i] < nothing + STANDS_OUT:
+            scores[i] = -np.inf
+    nothing = nothing if np.isfinite(nothing) else scores.max()
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
     temper = max(TEMPER, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
@@ -126,20 +133,21 @@ def judge(
             break
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
-    doubt = doubt_of(chosen, lost=lost)
+    doubt = doubt_of(chosen, candidates, lost=lost)
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
     causes = tuple(doubted(one, doubt) for one in sure)
     verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)
     return Judgement(verdict, causes, chosen, tuple(float(w) for w in weights), doubt)
 
 
-def doubt_of(fitted: Fitted, *, lost: bool) -> float:
+def doubt_of(fitted: Fitted, candidates: Mapping[str, Candidate], *, lost: bool) -> float:
     """The probability that what explains best is not what is there, by what it leaves."""
     if lost:
         return min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
     if np.isnan(fitted.left):
         return 0.0
-    beyond = max(fitted.left - NOISE, 0.0) / DOUBTFUL
+    form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)
+    beyond = max(fitted.left - NOISE, 0.0) / max(DOUBTFUL * form, SUREST)
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
 
 

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from model.library.effect import Acts, Effect, Parameter
 from model.library.smooth import smooth_size
 
@@ -22,15 +24,18 @@ def wrench(
     omega_y: Any,
     omega_z: Any,
 ) -> Any:
-    """-rho C_d A |v| v / 2, axis by axis, and -c |omega| omega."""
-    push = 0.5 * AIR_KG_PER_M3 * drag_area_m2
+    """-rho C_d A |v| v / 2 and -c |omega| omega: what moves fast one way is held every way."""
+    speed = np.sqrt(velocity_x * velocity_x + velocity_y * velocity_y + velocity_z * velocity_z)
+    spin = np.sqrt(omega_x * omega_x + omega_y * omega_y + omega_z * omega_z)
+    push = 0.5 * AIR_KG_PER_M3 * drag_area_m2 * smooth_size(speed, ROUNDING)
+    turn = turning_n_m_s2 * smooth_size(spin, ROUNDING)
     return (
-        -push * smooth_size(velocity_x, ROUNDING) * velocity_x,
-        -push * smooth_size(velocity_y, ROUNDING) * velocity_y,
-        -push * smooth_size(velocity_z, ROUNDING) * velocity_z,
-        -turning_n_m_s2 * smooth_size(omega_x, ROUNDING) * omega_x,
-        -turning_n_m_s2 * smooth_size(omega_y, ROUNDING) * omega_y,
-        -turning_n_m_s2 * smooth_size(omega_z, ROUNDING) * omega_z,
+        -push * velocity_x,
+        -push * velocity_y,
+        -push * velocity_z,
+        -turn * omega_x,
+        -turn * omega_y,
+        -turn * omega_z,
     )
 
 
@@ -38,7 +43,7 @@ EFFECT = Effect(
     name="air_drag",
     title="quadratic drag of the air",
     acts=Acts.PLATFORM,
-    equation="F = -rho C_d A |v| v/2, M = -c |omega| omega, axis by axis",
+    equation="F = -rho C_d A |v| v/2, M = -c |omega| omega",
     source="Newton; Hoerner, Fluid-Dynamic Drag (1965)",
     signature="quadrature as the square of the amplitude, 3rd harmonic; decay as 1/A",
     parameters=(
