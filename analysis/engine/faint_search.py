@@ -17,6 +17,9 @@ from analysis.engine.system import Array, Candidate
 SINGLES, PARENTS, PAIRS = 8, 3, 6
 """So many hypotheses are kept, and so many looked beside."""
 
+ASKS = 4.0
+"""One cause more is worth a try where the ring promises this rise of the score."""
+
 NEARLY = 0.9
 """All places alike are followed where they promise this share of what the best places do."""
 
@@ -76,8 +79,16 @@ def others_beside(refiner: Refiner, led: Followed) -> list[Candidate]:
     ]
 
 
-def one_more(found: Faint, refiner: Refiner, asks: float = 4.0) -> list[Scored]:
-    """One cause more than is on, where the ring promises so much higher a score, the best first."""
+def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scored]:
+    """One cause more than is on, where the ring promises something, the best first.
+
+    Parameters
+    ----------
+    found, refiner
+        As for `faint_search`.
+    explains
+        Share of what is left, as the score counts it, that it must promise to explain.
+    """
     chosen = {one.name: one for one in others_beside(refiner, found.followed)}
     state = found.followed.state
     on = Hypothesis() if state is None else state.hypothesis
@@ -91,7 +102,8 @@ def one_more(found: Faint, refiner: Refiner, asks: float = 4.0) -> list[Scored]:
         state=state,
     )
     nothing = screen.null().log_score
-    best = [one for one in _best(screen, chosen, on) if one.log_score > nothing + asks]
+    least = nothing + ASKS + explains * max(-nothing, 0.0)
+    best = [one for one in _best(screen, chosen, on) if one.log_score > least]
     simpler = (_simpler(screen, one, nothing) for one in best)
     return sorted(simpler, key=lambda one: -one.log_score)
 

@@ -66,6 +66,11 @@ class Followed:
         return share, self.costs.get(share, np.inf)
 
     @property
+    def to_end(self) -> bool:
+        """Whether it was led over all of the time, whatever was left."""
+        return self.reached[0] == 1.0
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Of the candidates that are on."""
         return () if self.state is None else self.state.hypothesis.names

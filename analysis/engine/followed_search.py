@@ -11,6 +11,7 @@ from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.kin import EFFORT as EFFORT_NEAR
 from analysis.engine.kin import lead_instead
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import BEHIND, follow_ring
@@ -39,9 +40,9 @@ EARLY = 0.03
 """Where none of the first that were tried can be led so much farther than parameters alone, as a
 share of the time, the ring tells nothing of what is left out."""
 
-ASKS, EXPLAINS = 4.0, 0.05
-"""One cause more is tried where it promises to raise the score by this, and to explain this share
-of what a law that was led to the end leaves beyond noise."""
+EXPLAINS = 0.05
+"""Beside a law that was led to the end, one cause more is tried where it promises to explain this
+share of what that leaves."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -102,19 +103,21 @@ class FollowedSearch:
             self._lead(one.point.nuisance, one.state, near=self._near)
         if not self._led:
             return
-        if not self._near and self._best.share < min(self._nothing.share + EARLY, 1.0):
+        nowhere = self._best.share < self._nothing.share + EARLY and not self._best.to_end
+        if nowhere and not self._near:
             return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
         for one in self._fresh(self._kin(others)):
             if (not self._near or one.log_score > least) and self._effort < EFFORT:
                 self._lead(one.point.nuisance, one.state, near=self._near)
-                if self._best.share == 1.0 and not self._near:
+                if self._best.to_end and not self._near:
                     break
         if not self._near:
             self._lead_kin()
         for _ in range(self._most_causes - 1):
             if not self._one_more():
                 break
+            self._one_less()
 
     @property
     def arrived(self) -> bool:
@@ -140,31 +143,31 @@ class FollowedSearch:
     def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
         system, ahead = self._system, self._best.costs if self._led else None
         found = follow_ring(system, nuisance, state, everything=True, ahead=ahead, near=near)
-        self._effort += found.effort
         if near and found.share < 1.0:
-            found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
             self._effort += found.effort
+            found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
             sharper = sharpened(state, lambda there: -_misfit(self._samples, found.nuisance, there))
             if sharper is not state:
-                found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
                 self._effort += found.effort
+                found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
         self._keep(found)
 
     def _keep(self, found: Followed) -> None:
+        self._effort += found.effort
         self._led.append(found)
         if self._progress is not None:
             self._progress(len(self._led), len(self._led))
 
     def _fresh(self, hypotheses: Sequence[Fitted]) -> list[Fitted]:
         """Those that were not led to the end before."""
-        known = {one.names for one in self._led if one.share == 1.0}
+        known = {one.names for one in self._led if one.to_end}
         return [one for one in hypotheses if one.hypothesis.names not in known]
 
     def _is_kin(self, fitted: Fitted) -> bool:
         """Whether it will be led from where another law of its kind came to the end."""
         names = (self._best.names, fitted.hypothesis.names)
-        if self._near or self._best.share < 1.0 or any(len(one) != 1 for one in names):
+        if self._near or not self._best.to_end or any(len(one) != 1 for one in names):
             return False
         one, other = (self._refiner.candidates[name].family for (name,) in names)
         return bool(one) and one == other
@@ -172,11 +175,11 @@ class FollowedSearch:
     def _lead_kin(self) -> None:
         """Where one law alone was led to the end, others of its kind are led from there."""
         best = self._best
-        if best.state is None or best.share < 1.0 or len(best.names) > 1:
+        if best.state is None or not best.to_end or len(best.names) > 1:
             return
         (known,) = best.names
         candidates = self._refiner.candidates
-        arrived = {one.names for one in self._led if one.share == 1.0}
+        arrived = {one.names for one in self._led if one.to_end}
         for name, one in candidates.items():
             kin = one.family and one.family == candidates[known].family
             if kin and name != known and (name,) not in arrived and self._effort < EFFORT:
@@ -208,13 +211,13 @@ class FollowedSearch:
         found = faint(self._system, best, others_beside(refiner, best))
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
-        for scored in one_more(found, refiner, self._asks(best, float(found.problem.base[0]))):
+        for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
             (added,) = set(scored.hypothesis.names) - set(best.names)
             promised.setdefault(family[added], []).append(scored)
 
         def lead(scored: Scored) -> Followed:
             state = State.of(scored, refiner.candidates)
-            self._lead(nuisances_of(found, scored), state, near=best.share == 1.0)
+            self._lead(nuisances_of(found, scored), state, near=best.to_end)
             return self._led[-1]
 
         known = {one.names for one in self._led}
@@ -232,18 +235,26 @@ class FollowedSearch:
                 self._lead_like(tried[kind], scored, best.names)
         return True
 
-    def _asks(self, best: Followed, noise: float) -> float:
-        """By how much one cause more must raise the score to be worth a try."""
-        if best.share < 1.0:
-            return ASKS
-        beyond = best.misfit - len(self._samples.shares)
-        return ASKS + EXPLAINS * max(beyond, 0.0) / (2.0 * noise)
+    def _one_less(self) -> None:
+        """Where one cause more led farther, try it without those that were there before."""
+        best, known = self._best, {one.names for one in self._led}
+        if best.state is None or not best.to_end:
+            return
+        for name in best.names:
+            state = best.state.without(name)
+            if state.hypothesis.names not in known and self._effort < EFFORT:
+                self._keep(
+                    follow_ring(
+                        self._system, best.nuisance, state,
+                        everything=True, near=True, ahead=best.costs, most=EFFORT_NEAR,
+                    )
+                )  # fmt: skip
 
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
         """Lead another law in the same places, from where one of its kind has come to."""
         (name,) = set(scored.hypothesis.names) - set(known)
         (like,) = set(law.names) - set(known)
-        found = lead_instead(self._samples, law, like, name) if law.share == 1.0 else None
+        found = lead_instead(self._samples, law, like, name) if law.to_end else None
         if found is not None:
             self._keep(found)
         else:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.engine.cause import Cause, cause_of, doubted
 from analysis.engine.fitted import Fitted
@@ -26,7 +27,7 @@ SIMPLER = 0.7
 
 NEGLIGIBLE, STANDS_OUT = 0.02, 15.0
 """A magnitude below this share of its usual size is nothing, unless with it the score is so much
-higher than without anything."""
+higher than without it."""
 
 SECOND = 0.8
 """A cause beside the first is reported if it is present with this probability."""
@@ -99,9 +100,7 @@ def judge(
         (score for score, one in zip(scores, fitted, strict=True) if not one.hypothesis.parts),
         default=-np.inf,
     )
-    for i, one in enumerate(fitted):
-        if negligible(one, candidates) and scores[i] < nothing + STANDS_OUT:
-            scores[i] = -np.inf
+    scores[_idle(fitted, scores, candidates)] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
@@ -175,13 +174,29 @@ def _among_kin(
     return found
 
 
-def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> bool:
-    """Whether a candidate of the hypothesis is so small that it is none."""
+def _idle(
+    fitted: Sequence[Fitted], scores: Array, candidates: Mapping[str, Candidate]
+) -> NDArray[np.bool_]:
+    """Hypotheses with a candidate that is so small, and explains so little, that it is none."""
+    found = np.zeros(len(fitted), dtype=bool)
+    best: dict[tuple[str, ...], float] = defaultdict(lambda: -np.inf)
+    for one, score in zip(fitted, scores, strict=True):
+        best[one.hypothesis.names] = max(best[one.hypothesis.names], float(score))
+    for i, one in enumerate(fitted):
+        for name in negligible(one, candidates):
+            without = best[one.hypothesis.without(name).names]
+            found[i] |= bool(scores[i] < without + STANDS_OUT)
+    return found
+
+
+def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> tuple[str, ...]:
+    """Candidates of a hypothesis that are far below their usual size."""
+    found = []
     for name, part in fitted.hypothesis.parts.items():
         steps = {term.name: term.step for term in candidates[name].terms}
         if all(abs(fitted.values[name, t]) < NEGLIGIBLE * abs(steps[t]) for t in part.terms):
-            return True
-    return False
+            found.append(name)
+    return tuple(found)
 
 
 def _plausible_score(fitted: Fitted) -> float:

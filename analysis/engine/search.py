@@ -1,7 +1,7 @@
 """The search: parameters, what the ring tells, what lines tell, and what both come to."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from analysis.engine.calibrate import Calibrated, calibrate
@@ -22,6 +22,9 @@ FOLLOWED = 2
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
+
+ABREAST, MOST_ABREAST = 12.0, 4
+"""Of causes that are faint, so many that are no farther behind the first are led to the phase."""
 
 UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
@@ -109,7 +112,7 @@ def search(
 
     found = _Found((), (), faint=False)
     if rings(system):
-        found = _by_ring(refiner, null, most_causes, tell)
+        found = _by_ring(refiner, most_causes, tell)
     if not found.fitted:
         found = _by_lines(refiner, null, most_causes, tell, found.led)
     return Search(
@@ -134,7 +137,7 @@ class _Led(NamedTuple):
     single: Sequence[Fitted]
 
 
-def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None) -> _Found:
+def _by_ring(refiner: Refiner, most_causes: int, tell: Tell | None) -> _Found:
     """By every sample, ring and all; no hypotheses, where that does not come to the noise."""
 
     def following(done: int, total: int) -> None:
@@ -156,9 +159,10 @@ def _by_ring(refiner: Refiner, null: Fitted, most_causes: int, tell: Tell | None
         screened, faintly = promised, []
         single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
-    led.follow(_to_follow(null, single, single) if near else single[:1], single)
+    led.follow(_abreast(single) if near else single[:1], single)
     if near or led.arrived:
-        return _Found(screened, led.fitted() or faintly, faint=True)
+        rung = led.fitted()
+        return _Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
     return _Found((), (), faint=False, led=_Led(led, single))
 
 
@@ -213,6 +217,28 @@ def _to_follow(
     for one in known:
         tried.setdefault(one.hypothesis.names, one)
     return list(tried.values())
+
+
+def _abreast(single: Sequence[Fitted]) -> list[Fitted]:
+    """The likeliest of what the ring tells in straight lines; rivals among them."""
+    least = max(one.log_score for one in single) - ABREAST
+    return [one for one in single if one.log_score > least][:MOST_ABREAST]
+
+
+def _beside(rung: Sequence[Fitted], faintly: Sequence[Fitted]) -> list[Fitted]:
+    """What was led to the ring's phase, and single causes that were not, as far behind as told."""
+    led = {one.hypothesis.names: one.log_score for one in rung}
+    told = {one.hypothesis.names: one.log_score for one in faintly}
+    common = [names for names in told if names in led and names]
+    if not common:
+        return list(rung)
+    rise = max(led[names] for names in common) - max(told[names] for names in common)
+    others = [
+        replace(one, log_score=one.log_score + rise)
+        for one in faintly
+        if one.hypothesis.names not in led and len(one.hypothesis.parts) == 1
+    ]
+    return sorted([*rung, *others], key=lambda one: -one.log_score)
 
 
 def rings(system: System) -> bool:
