@@ -1,16 +1,12 @@
 """Hypotheses led to the ring's phase, each for itself, and what all samples then say of them."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-import numpy as np
-
-from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
-from analysis.engine.faint import FORMS, faint
+from analysis.engine.all_samples import all_samples_say, cost_of
+from analysis.engine.faint import faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import EFFORT as EFFORT_NEAR
 from analysis.engine.kin import lead_instead
 from analysis.engine.refine import Refiner
@@ -46,9 +42,6 @@ share of what that leaves."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
-
-DOUBT = 2.0
-"""Standard deviations by which the misfit of all samples may hide an error of form."""
 
 
 class FollowedSearch:
@@ -134,7 +127,7 @@ class FollowedSearch:
                 nulls.append(follow_ring(self._system, start, everything=True, near=True))
         if min(one.misfit for one in (*self._led, *nulls)) > ARRIVED * count:
             return None
-        return _weighed(self._refiner, self._led, min(nulls, key=_cost), count)
+        return all_samples_say(self._refiner, self._led, min(nulls, key=cost_of), count)
 
     @property
     def _best(self) -> Followed:
@@ -261,45 +254,10 @@ class FollowedSearch:
             self._lead(law.nuisance, State.of(scored, self._refiner.candidates), near=False)
 
 
-def _weighed(
-    refiner: Refiner, led: Sequence[Followed], nothing: Followed, count: int
-) -> list[Fitted]:
-    """Hypotheses with the evidence of all samples, the best first.
-
-    What the best explains it explains but for its error of form, and so does every other: how
-    large that is, is not known, but no larger than what the best leaves may hide.
-    """
-    best = min(led, key=_cost, default=nothing)
-    form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
-    explained = _cost(nothing) - min(_cost(best), _cost(nothing))
-    hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
-    fitted = []
-    closest = {one.names: one for one in sorted(led, key=_cost, reverse=True)}
-    for one in (*closest.values(), nothing):
-        state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
-        logs = []
-        for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
-            noise = 1.0 + min((size * form) ** 2 * explained, hidden) / FORMS
-            unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
-            logs.append(np.log(weight) - unlikely - 0.5 * (one.misfit - best.misfit) / noise)
-        # No error of form makes parameters likelier that are far from what is known of them.
-        strain = 0.5 * float(one.nuisance @ one.nuisance)
-        prior = state.hypothesis.log_prior(refiner.candidates)
-        score = float(np.logaddexp.reduce(logs)) - strain + prior
-        there = refiner.at(state, refiner.directions_of(one.nuisance))
-        fitted.append(replace(there, log_score=score, point=one.point, left=one.misfit / count))
-    return sorted(fitted, key=lambda one: -one.log_score)
-
-
 def _misfit(samples: Samples, nuisance: Array, state: State) -> float:
     """Squared misfit of all samples at a state, ring and all."""
     (found,) = samples.residuals([Followed(nuisance, state).point])
     return float(found @ found)
-
-
-def _cost(led: Followed) -> float:
-    """Squared misfit of all samples and of the parameters to their prior."""
-    return led.misfit + float(led.nuisance @ led.nuisance)
 
 
 def _farthest(led: Followed) -> tuple[float, float]:

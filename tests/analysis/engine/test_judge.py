@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from analysis.engine.fitted import Fitted
-from analysis.engine.judge import CERTAIN, DOUBT_A_CAUSE, judge
+from analysis.engine.judge import (
+    CERTAIN,
+    DOUBT_A_CAUSE,
+    NEGLIGIBLE,
+    STANDS_OUT,
+    judge,
+)
 from analysis.engine.refine import Refiner
 from analysis.engine.search import look
 from analysis.engine.state import State
@@ -72,3 +78,18 @@ def test_nothing_is_said_to_be_left_out_only_where_parameters_follow_the_ring(
     said = judge(nothing, CANDIDATES, lost=True)
     assert said.verdict == "unexplained"
     assert said.causes == ()
+
+
+def test_what_is_small_but_explains_much_is_named(refiner: Refiner) -> None:
+    little = 0.2 * NEGLIGIBLE * DAMPING.terms[0].step
+    tiny = fitted(refiner, state_of(DAMPING, little), -10.0, 1.0)
+    faint = [tiny, fitted(refiner, None, -10.0 - 3.0 * STANDS_OUT, 1.2)]
+    assert [one.name for one in judge(faint, CANDIDATES).causes] == ["damping"]
+    fainter = [tiny, fitted(refiner, None, -10.0 - 0.5 * STANDS_OUT, 1.2)]
+    assert judge(fainter, CANDIDATES).verdict == "none"
+
+
+def test_a_law_without_an_error_of_form_must_explain_to_the_noise(refiner: Refiner) -> None:
+    exact = {name: replace(one, form_share=0.01) for name, one in CANDIDATES.items()}
+    assert judge(of(refiner, 1.15), exact).doubt > judge(of(refiner, 1.15), CANDIDATES).doubt
+    assert judge(of(refiner, 1.02), exact).doubt == 0.0

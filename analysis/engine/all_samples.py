@@ -1,0 +1,63 @@
+"""What all samples say of hypotheses that were led to the ring's phase."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
+from analysis.engine.faint import FORMS
+from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.refine import Refiner
+from analysis.engine.state import State
+
+DOUBT = 2.0
+"""Standard deviations by which the misfit of all samples may hide an error of form."""
+
+
+def all_samples_say(
+    refiner: Refiner, led: Sequence[Followed], nothing: Followed, count: int
+) -> list[Fitted]:
+    """Hypotheses with the evidence of all samples, the best first.
+
+    What the best explains it explains but for its error of form, and so does every other: how
+    large that is, is not known, but no larger than what the best leaves may hide.
+
+    Parameters
+    ----------
+    refiner
+        Makes fitted hypotheses of them.
+    led
+        With causes; of one set the closest counts.
+    nothing
+        Without any.
+    count
+        Samples.
+    """
+    best = min(led, key=cost_of, default=nothing)
+    form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
+    explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
+    hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
+    fitted = []
+    closest = {one.names: one for one in sorted(led, key=cost_of, reverse=True)}
+    for one in (*closest.values(), nothing):
+        state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
+        logs = []
+        for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
+            noise = 1.0 + min((size * form) ** 2 * explained, hidden) / FORMS
+            unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
+            logs.append(np.log(weight) - unlikely - 0.5 * (one.misfit - best.misfit) / noise)
+        # No error of form makes parameters likelier that are far from what is known of them.
+        strain = 0.5 * float(one.nuisance @ one.nuisance)
+        prior = state.hypothesis.log_prior(refiner.candidates)
+        score = float(np.logaddexp.reduce(logs)) - strain + prior
+        there = refiner.at(state, refiner.directions_of(one.nuisance))
+        fitted.append(replace(there, log_score=score, point=one.point, left=one.misfit / count))
+    return sorted(fitted, key=lambda one: -one.log_score)
+
+
+def cost_of(led: Followed) -> float:
+    """Squared misfit of all samples and of the parameters to their prior."""
+    return led.misfit + float(led.nuisance @ led.nuisance)

@@ -1,0 +1,225 @@
+"""Where parameters are on their way to the ring's phase, and the next step of it.
+
+A step is Gauss and Newton's, by differences that serve until it leaves where they hold.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.evidence import bounded
+from analysis.engine.followed import FINE, Followed
+from analysis.engine.ring_samples import Samples
+from analysis.engine.system import Array
+
+WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
+"""Shares of the time over which the ring is followed, one after the other."""
+
+REACH, NARROWEST = 4.0, 0.001
+"""Where more than this is left of a sample in the next window, as where a motion begins, a nearer
+one is led through first, down to this share of the time."""
+
+LOST = 300.0
+"""Where a sample is off by more than this, squared and on average, there is no phase to follow."""
+
+STRAIN, LEAVES = 80.0, 4.0
+"""Parameters make up for something left out where they cost more than this, squared and in sigmas,
+or where more is left than noise, by so many of its standard deviations."""
+
+THERE = 1.02
+"""On the way, a squared misfit of a sample below this, on average, needs no further step."""
+
+WORTH_A_STEP = 2.0
+"""Nor one that promises less than this of the squared misfit;"""
+
+WORTH_ANEW = 5.0
+"""nor what everything does simulated anew, where the last step that began so brought less than this
+of it;"""
+
+WORTH_ON_THE_WAY = 0.003
+"""or, in a window that is not the last, than this share of it."""
+
+CATCHES_UP = 0.1
+"""Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
+
+LOOSE = 0.02
+"""What is on is held where it is as if its number were known to its step over this."""
+
+STRAIGHT = 0.5
+"""A step that brings less than this of what it promises, or as much more, has left where
+differences hold: what everything does is simulated anew."""
+
+HALFWAY = 0.5
+"""Of a step that brings less of what it promises, shorter ones are tried:"""
+
+DAMPINGS = (10.0, 100.0, 1e3, 1e4, 1e6, 1e8)
+"""as if everything were known so much better where it is (Levenberg 1944, Marquardt 1963)."""
+
+MORE, LONGER, LONGEST = 1.25, 2.0, 4.0
+"""One that brings so much more than it promises is taken farther, up to that many times."""
+
+
+class _Step(NamedTuple):
+    """Where a step leads, what is left there, and by how much the cost falls."""
+
+    there: Followed
+    residual: Array
+    fell: float
+
+
+class Way:
+    """Where one is, and what every free number does about there, up to some share of the time."""
+
+    def __init__(self, samples: Samples, start: Followed) -> None:
+        self._samples = samples
+        self.at = start
+        self.here = np.zeros(0)
+        self._seen = 0.0
+        self._columns: Array | None = None
+        self._steps = np.zeros(0)
+        self._settled = False
+
+    def window(self, passed: float) -> float:
+        """Up to which share of the time to go next, as far as the ring is not lost.
+
+        Parameters
+        ----------
+        passed
+            Share up to which parameters were led.
+        """
+        share = next(one for one in WINDOWS if one > passed)
+        if self.left(share) < REACH:
+            (whole,) = self._samples.residuals([self.at.point])
+            farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
+            share = max(share, next(farthest, share))
+            whole[self._samples.shares > share] = 0.0
+            self.here, self._seen, self._columns, self._settled = whole, share, None, False
+        while share - passed > NARROWEST and self.left(share) > REACH:
+            share = 0.5 * (passed + share)
+        return share
+
+    def look(self, share: float) -> None:
+        """Simulate up to a share of the time, if that was not done."""
+        if share > self._seen:
+            (self.here,) = self._samples.residuals([self.at.point], share)
+            self._seen, self._columns, self._settled = share, None, False
+
+    def left(self, share: float) -> float:
+        """Squared misfit of a sample up to a share of the time, on average."""
+        self.look(share)
+        return self._mean(self.here, share)
+
+    def _mean(self, residual: Array, share: float) -> float:
+        inside = self._samples.shares <= share
+        return float(np.mean(residual[inside] ** 2)) if inside.any() else 0.0
+
+    def cost(self, share: float) -> float:
+        """Squared misfit up to a share of the time, and of the parameters to their prior."""
+        self.look(share)
+        inside = self.here[self._samples.shares <= share]
+        return float(inside @ inside + self.at.nuisance @ self.at.nuisance)
+
+    def strained(self, share: float) -> bool:
+        """Whether parameters make up for something that is left out."""
+        strain = float(self.at.nuisance @ self.at.nuisance)
+        return strain > STRAIN or self.left(share) > self.allowed(share)
+
+    def allowed(self, share: float) -> float:
+        """What noise may leave of a sample up to a share of the time."""
+        count = int((self._samples.shares <= share).sum())
+        return 1.0 + LEAVES * float(np.sqrt(2.0 / max(count, 1)))
+
+    def step(self, share: float, lost: float = LOST, best: float = np.inf) -> bool:
+        """One Gauss-Newton step over the samples up to a share of the time, if there is one.
+
+        Parameters
+        ----------
+        share
+            Of the time.
+        lost
+            Where more than this is left of a sample, squared and on average, there is none.
+        best
+            Cost of another hypothesis there: a step must catch up with it.
+        """
+        self.look(share)
+        inside = self._samples.shares <= share
+        here = self.here[inside]
+        if not len(here):
+            return False
+        near = share < 1.0 and float(here @ here) < THERE * len(here)
+        if near or not float(here @ here) < lost * len(here):
+            return False
+        fresh = self._columns is None
+        if fresh and self._settled:
+            return False
+        if self._columns is None:
+            points, self._steps = self.at.neighbours()
+            rows = np.stack(self._samples.residuals(points, self._seen))
+            self._columns = (self.here - rows) / self._steps[:, None]
+        fell = self._step(inside, best)
+        self._settled |= fresh and fell < WORTH_ANEW
+        if fell > 0.0:
+            return True
+        if fresh or self._settled:
+            return False
+        self._columns = None
+        return self.step(share, lost, best)
+
+    def _step(self, inside: NDArray[np.bool_], best: float) -> float:
+        """By how much the cost fell; nothing: there is no step."""
+        assert self._columns is not None
+        at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
+        # What a short window does not tell of a law stays about where it is (Levenberg 1944).
+        known = np.ones(len(self._steps))
+        known[len(at) :] = (LOOSE * FINE / self._steps[len(at) :]) ** 2
+        matrix = columns @ columns.T + np.diag(known)
+        right = columns @ here
+        right[: len(at)] -= at
+        lows, highs = np.full(len(right), -np.inf), np.full(len(right), np.inf)
+        if self.at.state is not None:
+            lows[len(at) :], highs[len(at) :] = self.at.state.bounds()
+        target = bounded(matrix, right, lows, highs)
+        before, promised = float(here @ here + at @ at), float(right @ target)
+        worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
+        if promised < max(worth, CATCHES_UP * (before - best)):
+            return 0.0
+        found = self._along(target, inside, before)
+        if found.fell < HALFWAY * promised:
+            # Differences hold over less than that: shorter, and least along what tells least.
+            for damping in DAMPINGS:
+                shorter = bounded(matrix + damping * np.diag(known), right, lows, highs)
+                nearer = self._along(shorter, inside, before)
+                if found.fell > max(nearer.fell, 0.0):
+                    break
+                found = max(found, nearer, key=lambda one: one.fell)
+        # Along a valley that turns, differences promise too little: a step is too short.
+        times = LONGER
+        while times <= LONGEST and found.fell > MORE * promised:
+            farther = self._along(times * target, inside, before)
+            if farther.fell < found.fell:
+                break
+            found, times = farther, times * LONGER
+        if found.fell <= 0.0:
+            return 0.0
+        self._learn(found.there, found.residual)
+        if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
+            self._columns = None
+        return found.fell
+
+    def _along(self, change: Array, inside: NDArray[np.bool_], before: float) -> "_Step":
+        """What a step comes to."""
+        there = self.at.moved(change, 1.0)
+        (residual,) = self._samples.residuals([there.point], self._seen)
+        left = residual[inside]
+        now = float(left @ left + there.nuisance @ there.nuisance)
+        return _Step(there, residual, before - now)
+
+    def _learn(self, there: Followed, found: Array) -> None:
+        """Go there, and let what was found correct the differences (Broyden 1965)."""
+        assert self._columns is not None
+        moved = there.numbers - self.at.numbers
+        missed = self.here - found - moved @ self._columns
+        scaled = moved / self._steps
+        self._columns += np.outer(scaled / self._steps, missed) / float(scaled @ scaled)
+        self.at, self.here = there, found
