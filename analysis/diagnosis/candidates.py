@@ -86,8 +86,15 @@ DRAGS = ("platform_damping", "air_drag")
 LOSS = "loss in the cables"
 LOSSES = ("cable_viscous", "cable_structural", "cable_relaxation")
 
+LENGTH = "length of the cables"
+LENGTHS = ("pretension", "cable_slack")
+"""A cable that is too long pulls less from the start: only where it then hangs is it another."""
+
 FAMILIES = (
-    dict.fromkeys(FRICTIONS, FRICTION) | dict.fromkeys(DRAGS, DRAG) | dict.fromkeys(LOSSES, LOSS)
+    dict.fromkeys(FRICTIONS, FRICTION)
+    | dict.fromkeys(DRAGS, DRAG)
+    | dict.fromkeys(LOSSES, LOSS)
+    | dict.fromkeys(LENGTHS, LENGTH)
 )
 
 WHOLE = ("left_at_rest",)

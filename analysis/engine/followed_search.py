@@ -105,12 +105,12 @@ class FollowedSearch:
                 self._lead(one.point.nuisance, one.state, near=self._near)
                 if self._best.to_end and not self._near:
                     break
-        if not self._near:
-            self._lead_kin()
+        self._lead_kin()
         for _ in range(self._most_causes - 1):
             if not self._one_more():
                 break
             self._one_less()
+            self._lead_kin()
 
     @property
     def arrived(self) -> bool:
@@ -166,16 +166,17 @@ class FollowedSearch:
         return bool(one) and one == other
 
     def _lead_kin(self) -> None:
-        """Where one law alone was led to the end, others of its kind are led from there."""
-        best = self._best
-        if best.state is None or not best.to_end or len(best.names) > 1:
+        """From where the best was led to the end, other laws of each of its kinds are led."""
+        best, candidates = self._best, self._refiner.candidates
+        if best.state is None or not best.to_end:
             return
-        (known,) = best.names
-        candidates = self._refiner.candidates
         arrived = {one.names for one in self._led if one.to_end}
-        for name, one in candidates.items():
-            kin = one.family and one.family == candidates[known].family
-            if kin and name != known and (name,) not in arrived and self._effort < EFFORT:
+        for known in best.names:
+            for name, one in candidates.items():
+                kin = one.family and one.family == candidates[known].family
+                names = tuple(sorted({*best.names, name} - {known}))
+                if not kin or name in best.names or names in arrived or self._effort > EFFORT:
+                    continue
                 found = lead_instead(self._samples, best, known, name)
                 if found is not None:
                     self._keep(found)

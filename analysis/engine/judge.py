@@ -43,7 +43,7 @@ NOISE, DOUBTFUL = 1.06, 8.0
 how much more leaves it even whether what explains best is what is there, for one whose law has this
 for an error of form: what is known exactly must explain to the noise."""
 
-SUREST = 0.1
+SUREST = 0.4
 """As much more leaves it even where a law has no error of form."""
 
 MOST_DOUBT = 0.6

@@ -13,8 +13,11 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array
 
-STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.35, 1.25, 1.6, 2.0)
+STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.12, 1.25, 1.6, 2.0)
 """Sizes that laws are screened at are alike to within so much."""
+
+CLOSER, ROUNDS = 1.13, 6
+"""Then closer, first by such a factor, in so many rounds."""
 
 FIRST_PART = 0.2
 """Share of the time that tells how strong the other law is."""
@@ -58,11 +61,14 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
 
 
 def _as_strong(samples: Samples, nuisance: Array, state: State) -> State:
-    """With magnitudes that leave least of the first part."""
-    tried = [state.smaller(factor) for factor in STRENGTHS]
-    points = [Followed(nuisance, one).point for one in tried]
-    found = samples.residuals(points, FIRST_PART)
-    return tried[int(np.argmin([one @ one for one in found]))]
+    """With magnitudes that leave least of the first part: by ever smaller factors."""
+    factors, ratio, best = list(STRENGTHS), CLOSER, 1.0
+    for _ in range(ROUNDS):
+        points = [Followed(nuisance, state.smaller(one)).point for one in factors]
+        found = samples.residuals(points, FIRST_PART)
+        best = factors[int(np.argmin([one @ one for one in found]))]
+        factors, ratio = [best / ratio, best, best * ratio], ratio**0.5
+    return state.smaller(best)
 
 
 def instead(state: State, known: str, other: str) -> State | None:
@@ -100,4 +106,8 @@ def instead(state: State, known: str, other: str) -> State | None:
     hypothesis = state.hypothesis.without(known)
     hypothesis = hypothesis.plus(other, Part(tuple(one.name for one in terms), shared, shapes))
     strong = {(other, one.name): float(np.mean(sizes[one.place])) * one.step for one in terms}
+    for one in terms:
+        # What one law counts as less another may count as more of something.
+        if one.low >= 0.0:
+            strong[other, one.name] = abs(strong[other, one.name])
     return State.at(hypothesis, values | strong, state.candidates)
