@@ -68,6 +68,8 @@ def headline(said: Statement) -> str:
     if verdict == "explained":
         how = "comes nearer" if _far_from_noise(said) else "follows"
         return f"The simulation left out {names}, and with {_it(causes)} it {how} the recording."
+    if verdict == "ambiguous" and not any(one["indistinguishable_from"] for one in causes):
+        return f"Something was left out, most likely {names}; these runs do not make it sure."
     if verdict == "ambiguous":
         return (
             "Something was left out, and these runs cannot settle what it is: "

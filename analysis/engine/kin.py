@@ -4,6 +4,8 @@ Where one law of friction explains a recording, another is near: in the same pla
 strong, with the same parameters. How much worse it is, is told within a few steps.
 """
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from analysis.engine.followed import Followed
@@ -48,7 +50,7 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
     state = instead(law.state, known, other)
     if state is None:
         return None
-    state = _as_strong(samples, law.nuisance, state)
+    state = _as_strong(samples, law.nuisance, _alike(samples, law, known, other))
     return follow_ring(
         samples.system,
         law.nuisance,
@@ -60,18 +62,40 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
     )
 
 
+def _alike(samples: Samples, law: Followed, known: str, other: str) -> State:
+    """With each number of shape that the other law alone has where it leaves least."""
+    assert law.state is not None
+    own: dict[str, float] = {}
+    shared = {one.name for one in law.state.candidates[known].shapes}
+    for shape in law.state.candidates[other].shapes:
+        if shape.name not in shared and not shape.whole:
+            values = (shape.default, shape.low, shape.high)
+            tried = [instead(law.state, known, other, {**own, shape.name: one}) for one in values]
+            own[shape.name] = values[_least(samples, law.nuisance, tried)]
+    found = instead(law.state, known, other, own)
+    assert found is not None
+    return found
+
+
+def _least(samples: Samples, nuisance: Array, tried: Sequence[State | None]) -> int:
+    """Which of some states leaves least of the first part."""
+    points = [Followed(nuisance, one).point for one in tried]
+    return int(np.argmin([one @ one for one in samples.residuals(points, FIRST_PART)]))
+
+
 def _as_strong(samples: Samples, nuisance: Array, state: State) -> State:
     """With magnitudes that leave least of the first part: by ever smaller factors."""
     factors, ratio, best = list(STRENGTHS), CLOSER, 1.0
     for _ in range(ROUNDS):
-        points = [Followed(nuisance, state.smaller(one)).point for one in factors]
-        found = samples.residuals(points, FIRST_PART)
-        best = factors[int(np.argmin([one @ one for one in found]))]
+        tried = [state.smaller(one) for one in factors]
+        best = factors[_least(samples, nuisance, tried)]
         factors, ratio = [best / ratio, best, best * ratio], ratio**0.5
     return state.smaller(best)
 
 
-def instead(state: State, known: str, other: str) -> State | None:
+def instead(
+    state: State, known: str, other: str, own: Mapping[str, float] | None = None
+) -> State | None:
     """A hypothesis with another law in the place of one that is on.
 
     It is as strong as the one before: each of its magnitudes is as many of the sizes that it is
@@ -83,6 +107,8 @@ def instead(state: State, known: str, other: str) -> State | None:
         With the law that is known.
     known, other
         The two candidates.
+    own
+        Numbers of shape that only the other law has; those left out have their default.
 
     Returns
     -------
@@ -98,8 +124,9 @@ def instead(state: State, known: str, other: str) -> State | None:
     terms = [one for one in new.terms if one.place in sizes]
     if {one.place for one in terms} != set(sizes):
         return None
+    given = {**part.shapes, **(own or {})}
     shapes = {
-        one.name: float(np.clip(part.shapes.get(one.name, one.default), one.low, one.high))
+        one.name: float(np.clip(given.get(one.name, one.default), one.low, one.high))
         for one in new.shapes
     }
     shared = part.shared and new.shareable
