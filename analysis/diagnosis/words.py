@@ -68,13 +68,8 @@ def headline(said: Statement) -> str:
     if verdict == "explained":
         how = "comes nearer" if _far_from_noise(said) else "follows"
         return f"The simulation left out {names}, and with {_it(causes)} it {how} the recording."
-    if verdict == "ambiguous" and not any(one["indistinguishable_from"] for one in causes):
-        return f"Something was left out, most likely {names}; these runs do not make it sure."
     if verdict == "ambiguous":
-        return (
-            "Something was left out, and these runs cannot settle what it is: "
-            f"{listed([_set(one) for one in causes], 'and beside it')}."
-        )
+        return _ambiguous(causes)
     if verdict == "unexplained":
         return _unexplained(said)
     return (
@@ -82,6 +77,16 @@ def headline(said: Statement) -> str:
         "causes were not asked for."
         if said["located"]
         else "Nowhere do recording and simulation differ beyond the noise."
+    )
+
+
+def _ambiguous(causes: Sequence[Statement]) -> str:
+    if not any(one["indistinguishable_from"] for one in causes):
+        names = listed([short(one["effect"]) for one in causes])
+        return f"Something was left out, most likely {names}; these runs do not make it sure."
+    return (
+        "Something was left out, and these runs cannot settle what it is: "
+        f"{listed([_set(one) for one in causes], 'and beside it')}."
     )
 
 

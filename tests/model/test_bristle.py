@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from cdpr8.rigfile import load_rig, packaged_rig_path
+from model import ActiveEffect, simulate
 from model.library.discovery import library
 from model.library.smooth import gaussian
 from tests.model.harness import cable_response
@@ -46,3 +48,17 @@ def test_gaussian_is_what_it_says_and_never_overflows() -> None:
     x = np.linspace(-6.0, 6.0, 2001)
     assert np.abs(gaussian(x) - np.exp(-x * x)).max() < 1e-4
     assert gaussian(1e100) < 1e-100
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_the_default_steps_follow_a_reversal_far_closer_than_a_cell_sees(name: str) -> None:
+    rig = load_rig(packaged_rig_path())
+    moved = rig.excitation.model_copy(update={"motion_s": 1.5})
+    on = [ActiveEffect(name)]
+    usual, close = (
+        simulate(rig, excitation=moved, effects=on, output_rate_hz=333.0, step_s=step_s)
+        for step_s in (None, 1.5e-4)
+    )
+    off = usual.tension_n - close.tension_n
+    # A cell's noise is some 5 mN.
+    assert float(np.sqrt(np.mean(off**2))) < 1e-3

@@ -1,0 +1,39 @@
+"""A run as the engine sees it: what its samples are known to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.diagnosis.recording import recording
+from cdpr8.runfolder import Run, load_run, sample_data_folder
+
+STATED_S = 2.4e-4
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return load_run(sample_data_folder() / "run01")
+
+
+def stating(run: Run, sigma_s: float | None) -> Run:
+    """The run with another statement of how well its sampling instants are known."""
+    nodes = [one.model_copy(update={"sampling_sigma_s": sigma_s}) for one in run.start.nodes]
+    return replace(run, start=run.start.model_copy(update={"nodes": nodes}))
+
+
+def test_what_a_run_states_of_its_instants_goes_with_the_rate_of_the_tension(run: Run) -> None:
+    one = recording(stating(run, STATED_S), None).bundles[0]
+    assert one.jitter is not None
+    assert one.jitter.shape == one.value.shape
+    motion = run.start.excitation
+    moving = (one.t_s > motion.start_s + 1.0) & (one.t_s < motion.end_s - 1.0)
+    resting = one.t_s < motion.start_s - 0.1
+    # 7.4 N at 2.06 Hz change by 68 N/s, rms; a ring adds to it.
+    driven = STATED_S * 2.0 * np.pi * motion.frequency_hz * 7.4 / np.sqrt(2.0)
+    assert np.sqrt(np.mean(one.jitter[moving] ** 2)) == pytest.approx(driven, rel=0.2)
+    assert np.sqrt(np.mean(one.jitter[resting] ** 2)) < 0.05 * driven
+
+
+def test_a_run_that_states_nothing_has_exact_instants(run: Run) -> None:
+    assert recording(stating(run, None), None).bundles[0].jitter is None
