@@ -40,6 +40,9 @@ EXPLAINS = 0.05
 """Beside a law that was led to the end, one cause more is tried where it promises to explain this
 share of what that leaves."""
 
+CLOSE = 60.0
+"""Without a cause that does nothing, the squared misfit rises by no more than this."""
+
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
 
@@ -109,7 +112,7 @@ class FollowedSearch:
         for _ in range(self._most_causes - 1):
             if not self._one_more():
                 break
-            self._one_less()
+            self._one_less(self._best)
             self._lead_kin()
 
     @property
@@ -229,20 +232,23 @@ class FollowedSearch:
                 self._lead_like(tried[kind], scored, best.names)
         return True
 
-    def _one_less(self) -> None:
-        """Where one cause more led farther, try it without those that were there before."""
-        best, known = self._best, {one.names for one in self._led}
-        if best.state is None or not best.to_end:
+    def _one_less(self, whole: Followed) -> None:
+        """Try without one cause, from where one more led to: each may only have shown the way."""
+        if whole.state is None or not whole.to_end or len(whole.names) < 2:
             return
-        for name in best.names:
-            state = best.state.without(name)
-            if state.hypothesis.names not in known and self._effort < EFFORT:
-                self._keep(
-                    follow_ring(
-                        self._system, best.nuisance, state,
-                        everything=True, near=True, ahead=best.costs, most=EFFORT_NEAR,
-                    )
-                )  # fmt: skip
+        close = cost_of(whole) + CLOSE
+        known = {one.names for one in self._led if one.to_end and cost_of(one) < close}
+        for name in whole.names:
+            state = whole.state.without(name)
+            if state.hypothesis.names in known or self._effort > EFFORT:
+                continue
+            fewer = follow_ring(
+                self._system, whole.nuisance, state,
+                everything=True, near=True, ahead=whole.costs, most=EFFORT_NEAR,
+            )  # fmt: skip
+            self._keep(fewer)
+            if cost_of(fewer) < close:
+                self._one_less(fewer)
 
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
         """Lead another law in the same places, from where one of its kind has come to."""
