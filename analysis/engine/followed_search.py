@@ -89,7 +89,7 @@ class FollowedSearch:
         Parameters
         ----------
         hypotheses
-            Those to try, the null not among them; what was led before is not led again.
+            Those to try, the null not among them; what was led to the end is not led again.
         others
             Single causes, the best first: laws of the same things as what comes far are tried too.
         """
