@@ -22,6 +22,9 @@ TEMPER_SHARE = 0.1
 """Or by this share of what there is to explain, times the square of the error of form of the laws
 that explain it: the more there is, the more their form counts."""
 
+MOST_AT_NOISE = 20.0
+"""But by no more than this, where the best comes to the noise: its form has shown to be right."""
+
 SIMPLER = 0.7
 """Of laws of one family, each number of shape takes this off the logarithm of odds."""
 
@@ -105,6 +108,8 @@ def judge(
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
     temper = max(TEMPER, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
+    if best.left < NOISE:
+        temper = min(temper, MOST_AT_NOISE)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])

@@ -93,3 +93,20 @@ def test_a_law_without_an_error_of_form_must_explain_to_the_noise(refiner: Refin
     exact = {name: replace(one, form_share=0.01) for name, one in CANDIDATES.items()}
     assert judge(of(refiner, 1.15), exact).doubt > judge(of(refiner, 1.15), CANDIDATES).doubt
     assert judge(of(refiner, 1.02), exact).doubt == 0.0
+
+
+def test_of_kin_the_one_that_comes_to_the_noise_is_named_however_much_there_is_to_explain(
+    refiner: Refiner,
+) -> None:
+    kin = {
+        name: replace(one, family="one thing", form_share=0.12) for name, one in CANDIDATES.items()
+    }
+    for left, alone in ((1.0, True), (1.2, False)):
+        found = [
+            fitted(refiner, state_of(DAMPING, 0.2), -100.0, left),
+            fitted(refiner, state_of(STEP, 1.0, moment=4.0), -500.0, 2.4),
+            fitted(refiner, None, -1e5, 50.0),
+        ]
+        (cause,) = judge(found, kin).causes
+        assert cause.name == "damping"
+        assert (cause.rivals == ()) == alone
