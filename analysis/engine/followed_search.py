@@ -7,8 +7,7 @@ from analysis.engine.faint import faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.kin import EFFORT as EFFORT_NEAR
-from analysis.engine.kin import lead_instead
+from analysis.engine.kin import lead_from, lead_instead
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -242,10 +241,7 @@ class FollowedSearch:
             state = whole.state.without(name)
             if state.hypothesis.names in known or self._effort > EFFORT:
                 continue
-            fewer = follow_ring(
-                self._system, whole.nuisance, state,
-                everything=True, near=True, ahead=whole.costs, most=EFFORT_NEAR,
-            )  # fmt: skip
+            fewer = lead_from(self._system, whole, state)
             self._keep(fewer)
             if cost_of(fewer) < close:
                 self._one_less(fewer)

@@ -13,7 +13,7 @@ from analysis.engine.hypothesis import Part
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array
+from analysis.engine.system import Array, System
 
 STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.12, 1.25, 1.6, 2.0)
 """Sizes that laws are screened at are alike to within so much."""
@@ -51,14 +51,23 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
     if state is None:
         return None
     state = _as_strong(samples, law.nuisance, _alike(samples, law, known, other))
+    return lead_from(samples.system, law, state)
+
+
+def lead_from(system: System, law: Followed, state: State) -> Followed:
+    """Lead a hypothesis that is near another from where that one has come to the end.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    law
+        Led to the end.
+    state
+        The free numbers to begin with.
+    """
     return follow_ring(
-        samples.system,
-        law.nuisance,
-        state,
-        everything=True,
-        near=True,
-        ahead=law.costs,
-        most=EFFORT,
+        system, law.nuisance, state, everything=True, near=True, ahead=law.costs, most=EFFORT
     )
 
 
