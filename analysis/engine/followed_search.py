@@ -124,7 +124,7 @@ class FollowedSearch:
         count = len(self._samples.shares)
         nulls = [self._nothing]
         for way in sorted(self._led, key=_farthest)[:RESTARTS]:
-            if way.reached[0] == 1.0:
+            if way.to_end:
                 start = _parameters_of(self._system, way)
                 nulls.append(follow_ring(self._system, start, everything=True, near=True))
         if min(one.misfit for one in (*self._led, *nulls)) > ARRIVED * count:

@@ -90,7 +90,9 @@ class Way:
         """
         share = next(one for one in WINDOWS if one > passed)
         if self.left(share) < REACH:
-            (whole,) = self._samples.residuals([self.at.point])
+            whole = self.here
+            if self._seen < 1.0:
+                (whole,) = self._samples.residuals([self.at.point])
             farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
