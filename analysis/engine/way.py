@@ -88,6 +88,7 @@ class Way:
         passed
             Share up to which parameters were led.
         """
+        self._settled = False
         share = next(one for one in WINDOWS if one > passed)
         if self.left(share) < REACH:
             whole = self.here
@@ -96,7 +97,7 @@ class Way:
             farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
-            self.here, self._seen, self._columns, self._settled = whole, share, None, False
+            self.here, self._seen, self._columns = whole, share, None
         while share - passed > NARROWEST and self.left(share) > REACH:
             share = 0.5 * (passed + share)
         return share
