@@ -7,6 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.diagnosis.noise import (
+    LEAST_REST,
+    about_bend,
+    about_line,
+    at_rest,
+    instants_s,
+    stated_covariance,
+    with_instants,
+)
 from analysis.engine.system import Bundle, Segment
 from analysis.engine.tones import RESONANT, resonant
 from analysis.series import measured_cables
@@ -28,8 +37,8 @@ MOST_HZ = 250.0
 LINES_HZ = 25.0
 """Of stretches that do not repeat, lines up to here."""
 
-LEAST_REST = 20
-"""Samples at rest that a noise level needs."""
+LEAST_FRAMES, LEAST_REST_FRAMES = 20, 10
+"""Poses that are of use, and those at rest that a noise level needs."""
 
 LEAST_NOISE_N = 2e-4
 """Below this the resolution of the electronics is the noise."""
@@ -106,10 +115,11 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
     if not cables:
         raise DataError("no cable has usable tension samples", where=str(run.folder))
     notes: list[str] = []
-    bundles = [_tension(run, cable, excitation, shift_s, notes) for cable in cables]
+    tensions = [_tension(run, cable, excitation, shift_s, notes) for cable in cables]
+    bundles = _instants(tensions, excitation, shift_s, notes)
     seen = None if pose is None else _pose(run, pose, excitation, shift_s, notes)
     if seen is not None:
-        bundles.append(seen)
+        bundles += _instants([seen], excitation, shift_s, notes)
     else:
         notes.append("no pose: cameras and clocks cannot be told from what the platform does")
     near = [tone for tone in bundles[0].tones_hz if resonant(tone, excitation.frequency_hz)]
@@ -173,12 +183,14 @@ def _tension(
         whole = len(t_s) // block * block
         t_s = t_s[:whole].reshape(-1, block).mean(axis=1)
         value = value[:whole].reshape(-1, block).mean(axis=1)
-    sigma, known = _noise(t_s, value, excitation, shift_s, run)
-    stated = (one.sampling_sigma_s for one in run.start.nodes if one.cable == cable)
-    instant_s = (next(stated, None) or 0.0) / np.sqrt(block)
-    if not known:
+    rest = at_rest(t_s, excitation, shift_s)
+    if run.start.motion_start_known and np.count_nonzero(rest) >= LEAST_REST:
+        sigma = about_line(t_s[rest], value[rest])
+    else:
+        sigma = about_bend(value)
         notes.append(f"cable {cable}: no rest to take the noise from; {sigma:.4f} N is an estimate")
-    return Bundle(
+    stated = (one.sampling_sigma_s for one in run.start.nodes if one.cable == cable)
+    found = Bundle(
         names=(f"tension {cable}",),
         units=("N",),
         t_s=t_s,
@@ -189,30 +201,23 @@ def _tension(
         kind="tension",
         base_share=BASE_SHARE,
         tones_hz=tuple(tones_hz(Machine.from_rig(run.rig))),
-        jitter=instant_s * np.gradient(value, t_s)[:, None] if instant_s else None,
     )
+    return with_instants(found, (next(stated, None) or 0.0) / np.sqrt(block))
 
 
-def _noise(
-    t_s: Array, value: Array, excitation: Excitation, shift_s: float, run: Run
-) -> tuple[float, bool]:
-    """Standard deviation of a sample at rest, and whether there was rest to take it from."""
-    at_rest = t_s < excitation.start_s + shift_s - 0.02
-    if excitation.amplitude_deg == 0.0:
-        at_rest[:] = True
-    if run.start.motion_start_known and np.count_nonzero(at_rest) >= LEAST_REST:
-        return _about_line(t_s[at_rest], value[at_rest]), True
-    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
-    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5)), False
-
-
-def _about_line(t_s: Array, value: Array) -> float:
-    """About a straight line, outliers aside."""
-    line = np.polynomial.Polynomial.fit(t_s, value, 1)(t_s)
-    rest = value - line
-    typical = 1.4826 * np.median(np.abs(rest - np.median(rest)))
-    spread = float(rest.std(ddof=2))
-    return spread if spread < 2.0 * typical or typical == 0.0 else float(typical)
+def _instants(
+    bundles: list[Bundle], excitation: Excitation, shift_s: float, notes: list[str]
+) -> list[Bundle]:
+    """Bundles of one clock; where the run states nothing of their instants, what they tell."""
+    if any(one.jitter is not None for one in bundles):
+        return bundles
+    found_s = instants_s(bundles, excitation, shift_s)
+    if found_s:
+        notes.append(
+            f"{bundles[0].kind}: instants of samples spread by {1e3 * found_s:.2g} ms, as the "
+            "noise of what moves tells; the run states nothing of it, and it is counted as noise"
+        )
+    return [with_instants(one, found_s) for one in bundles]
 
 
 def _pose(
@@ -223,19 +228,17 @@ def _pose(
     good = pose[names].notna().all(axis=1).to_numpy()
     good = good & ((flags & int(FrameFlag.REPEATED | FrameFlag.BLACK | FrameFlag.NO_MARKER)) == 0)
     seen = pose[good].sort_values("t_s", kind="stable")
-    if len(seen) < LEAST_REST:
+    if len(seen) < LEAST_FRAMES:
         notes.append(f"{len(seen)} usable poses are too few")
         return None
     t_s = seen["t_s"].to_numpy(dtype=float)
     value = seen[names].to_numpy(dtype=float) * _DEGREES
     # An angle that passes 180 deg comes back at -180.
     value[:, 3:] = np.unwrap(value[:, 3:], axis=0)
-    covariance = _stated(seen) * np.outer(_DEGREES, _DEGREES)
-    at_rest = t_s < excitation.start_s + shift_s - 0.02
-    if excitation.amplitude_deg == 0.0:
-        at_rest[:] = True
-    if run.start.motion_start_known and np.count_nonzero(at_rest) >= 10:
-        spread = np.array([_about_line(t_s[at_rest], column) for column in value[at_rest].T])
+    covariance = stated_covariance(seen) * np.outer(_DEGREES, _DEGREES)
+    rest = at_rest(t_s, excitation, shift_s)
+    if run.start.motion_start_known and np.count_nonzero(rest) >= LEAST_REST_FRAMES:
+        spread = np.array([about_line(t_s[rest], column) for column in value[rest].T])
         stated = np.sqrt(np.diag(covariance))
         if not np.isfinite(stated).all() or (stated == 0.0).any():
             covariance = np.diag(spread**2)
@@ -250,7 +253,7 @@ def _pose(
                     "spread is taken"
                 )
     elif not np.isfinite(covariance).all():
-        spread = np.array([_bend(column) for column in value.T])
+        spread = np.array([about_bend(column) for column in value.T])
         covariance = np.diag(spread**2)
         notes.append("pose.csv states no sigma and there was no rest: the noise is an estimate")
     floor = np.array([LEAST_NOISE_M] * 3 + [LEAST_NOISE_RAD] * 3)
@@ -267,36 +270,6 @@ def _pose(
         base_share=BASE_SHARE,
         tones_hz=tuple(tones_hz(Machine.from_rig(run.rig))),
     )
-
-
-def _bend(value: Array) -> float:
-    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
-    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5))
-
-
-def _stated(seen: "pd.DataFrame") -> Array:
-    """Median covariance of the poses as pose.csv states it, in m and deg, shape (6, 6)."""
-    axes = ("x", "y", "z", "roll", "pitch", "yaw")
-    units = ("m", "m", "m", "deg", "deg", "deg")
-    sigma = np.array(
-        [
-            np.median(seen[f"sigma_{a}_{u}"].to_numpy(dtype=float))
-            for a, u in zip(axes, units, strict=True)
-        ]
-    )
-    correlation = np.eye(6)
-    for i, a in enumerate(axes):
-        for k in range(i + 1, 6):
-            name = f"corr_{a}_{axes[k]}"
-            if name in seen:
-                value = float(np.median(np.nan_to_num(seen[name].to_numpy(dtype=float))))
-                correlation[i, k] = correlation[k, i] = value
-    # Medians of entries need not be a correlation: what is left of it is.
-    values, vectors = np.linalg.eigh(correlation)
-    correlation = vectors @ np.diag(np.maximum(values, 1e-3)) @ vectors.T
-    scale = np.sqrt(np.diag(correlation))
-    correlation /= np.outer(scale, scale)
-    return np.asarray(correlation * np.outer(sigma, sigma))
 
 
 def names_of(recordings: Sequence[Recording]) -> str:

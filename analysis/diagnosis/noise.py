@@ -1,0 +1,184 @@
+"""The noise of a run's samples: of values at rest, and of the instants that they are of."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.system import Bundle
+from cdpr8.rigfile.schema import Excitation
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+LEAST_REST = 20
+"""Samples at rest that a noise level needs."""
+
+SETTLES_S = 0.02
+"""The last of the rest is not counted as rest."""
+
+HARMONICS = 7
+"""Of the drive, taken off before the floor of a spectrum is looked for."""
+
+LOWEST_BINS = 3
+"""Of a spectrum, that hold what is left of trends."""
+
+QUIET = 0.25
+"""Share of a spectrum's bins that no line is expected to reach, however much rings."""
+
+LEAST_SAMPLES = 50
+"""That a floor needs."""
+
+REGULAR = 1.5
+"""A longer interval than so many usual ones is a gap."""
+
+SURE, LEAST_INSTANT_S = 3.0, 1e-5
+"""Instants are unsure where the floor tells it by so many standard deviations, and by this much."""
+
+
+def at_rest(t_s: Array, excitation: Excitation, shift_s: float) -> NDArray[np.bool_]:
+    """Which samples are of a platform that rests.
+
+    Parameters
+    ----------
+    t_s
+        Of the samples, shape (n,).
+    excitation, shift_s
+        What was commanded, and how much later than it says.
+    """
+    if excitation.amplitude_deg == 0.0 and not any(excitation.platform_offset_m):
+        return np.ones(len(t_s), dtype=bool)
+    return np.asarray(t_s < excitation.start_s + shift_s - SETTLES_S)
+
+
+def about_bend(value: Array) -> float:
+    """Standard deviation of samples about their neighbours' mean, outliers aside."""
+    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
+    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5))
+
+
+def about_line(t_s: Array, value: Array) -> float:
+    """Standard deviation of samples about a straight line, outliers aside."""
+    line = np.polynomial.Polynomial.fit(t_s, value, 1)(t_s)
+    rest = value - line
+    typical = 1.4826 * np.median(np.abs(rest - np.median(rest)))
+    spread = float(rest.std(ddof=2))
+    return spread if spread < 2.0 * typical or typical == 0.0 else float(typical)
+
+
+def stated_covariance(seen: "pd.DataFrame") -> Array:
+    """Median covariance of the poses as pose.csv states it, in m and deg, shape (6, 6)."""
+    axes = ("x", "y", "z", "roll", "pitch", "yaw")
+    units = ("m", "m", "m", "deg", "deg", "deg")
+    sigma = np.array(
+        [
+            np.median(seen[f"sigma_{a}_{u}"].to_numpy(dtype=float))
+            for a, u in zip(axes, units, strict=True)
+        ]
+    )
+    correlation = np.eye(6)
+    for i, a in enumerate(axes):
+        for k in range(i + 1, 6):
+            name = f"corr_{a}_{axes[k]}"
+            if name in seen:
+                value = float(np.median(np.nan_to_num(seen[name].to_numpy(dtype=float))))
+                correlation[i, k] = correlation[k, i] = value
+    # Medians of entries need not be a correlation: what is left of it is.
+    values, vectors = np.linalg.eigh(correlation)
+    correlation = vectors @ np.diag(np.maximum(values, 1e-3)) @ vectors.T
+    scale = np.sqrt(np.diag(correlation))
+    correlation /= np.outer(scale, scale)
+    return np.asarray(correlation * np.outer(sigma, sigma))
+
+
+def instants_s(bundles: Sequence[Bundle], excitation: Excitation, shift_s: float) -> float:
+    """How unsure the instants of samples are, by what they add to the noise of what moves.
+
+    A value that changes at rate v, and whose instant is off by s, is off by v s: other for each
+    sample, so that it raises the floor of a spectrum between its lines. Drive and rings are lines;
+    a step, as where a frame was lost, is in one half of the motion: the lowest counts.
+
+    Parameters
+    ----------
+    bundles
+        Whose samples have their instants from one clock, their noise known.
+    excitation, shift_s
+        What was commanded, and how much later than it says.
+
+    Returns
+    -------
+    float
+        Standard deviation, s; 0 where the floor is that of the rest.
+    """
+    start_s, end_s = excitation.start_s + shift_s, excitation.end_s + shift_s
+    middle_s = 0.5 * (start_s + end_s)
+    parts = ((start_s, end_s), (start_s, middle_s), (middle_s, end_s))
+    return min(_instants_s(bundles, excitation, shift_s, part) for part in parts)
+
+
+def _instants_s(
+    bundles: Sequence[Bundle],
+    excitation: Excitation,
+    shift_s: float,
+    within_s: tuple[float, float],
+) -> float:
+    """The same, of a stretch of time."""
+    excess, power, floors, still = [], [], [], []
+    for bundle in bundles:
+        chosen = (bundle.t_s >= within_s[0]) & (bundle.t_s < within_s[1])
+        piece = _without_gaps(bundle.t_s, np.flatnonzero(chosen))
+        if len(piece) < LEAST_SAMPLES:
+            continue
+        t_s, value = bundle.t_s[piece], bundle.value[piece]
+        floor, noise = _floor(t_s, value, excitation.frequency_hz), np.diag(bundle.covariance)
+        rest = int(at_rest(bundle.t_s, excitation, shift_s).sum())
+        spread = np.hypot(2.0 / np.sqrt(QUIET * len(piece)), np.sqrt(2.0 / max(rest, 1)))
+        excess.append(floor - noise)
+        power.append(np.mean(np.gradient(value, t_s, axis=0) ** 2, axis=0))
+        floors.append(spread * floor)
+        still.append(spread * noise)
+    if not excess:
+        return 0.0
+    rate = np.concatenate(power)
+    # Where rings fill a spectrum its floor is high: that counts for little.
+    weight = rate / np.concatenate(floors) ** 2
+    square = float(weight @ np.concatenate(excess)) / float(weight @ rate)
+    unsure = float(np.linalg.norm(weight * np.concatenate(still))) / float(weight @ rate)
+    return float(np.sqrt(square)) if square > max(SURE * unsure, LEAST_INSTANT_S**2) else 0.0
+
+
+def with_instants(bundle: Bundle, instant_s: float) -> Bundle:
+    """A bundle whose instants are known to a standard deviation, s."""
+    rate = np.gradient(bundle.value, bundle.t_s, axis=0)
+    return replace(bundle, jitter=instant_s * rate if instant_s else None)
+
+
+def _without_gaps(t_s: Array, places: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The longest stretch of samples that follow each other at their usual interval."""
+    if len(places) < 2:
+        return places
+    interval = np.diff(t_s[places])
+    pieces = np.split(places, np.flatnonzero(interval > REGULAR * np.median(interval)) + 1)
+    return max(pieces, key=len)
+
+
+def _floor(t_s: Array, value: Array, frequency_hz: float) -> Array:
+    """Variance of what lies between the lines of each column's spectrum, shape (m,)."""
+    count = len(t_s)
+    nyquist_hz = 0.5 * (count - 1) / (t_s[-1] - t_s[0])
+    turns = 2.0 * np.pi * frequency_hz * (t_s - t_s[0])
+    waves = [np.ones(count), t_s - t_s.mean()]
+    for number in range(1, HARMONICS + 1):
+        if number * frequency_hz < nyquist_hz:
+            waves += [np.cos(number * turns), np.sin(number * turns)]
+    basis = np.stack(waves, axis=1)
+    rest = value - basis @ np.linalg.lstsq(basis, value, rcond=None)[0]
+    window = np.hanning(count)[:, None]
+    power = np.abs(np.fft.rfft(rest * window, axis=0)) ** 2 / (window**2).sum()
+    # A bin of white noise has an exponential distribution.
+    quiet = np.quantile(power[LOWEST_BINS:], QUIET, axis=0) / -np.log1p(-QUIET)
+    return np.asarray(quiet)
