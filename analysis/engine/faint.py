@@ -86,8 +86,12 @@ def faint(
     (here,) = samples.residuals([followed.point])
     points, steps = followed.neighbours()
     numbers, count = len(steps), len(followed.nuisance)
+    known = np.zeros((0, len(here)))
+    if followed.columns is not None and followed.fresh and followed.telling == 1.0:
+        known = followed.columns
+    points = points[len(known) :]
     places: list[tuple[str, int, int]] = []
-    scales = list(steps)
+    scales = list(steps[len(known) :])
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
     on = followed.point.effects
     for candidate in candidates:
@@ -106,7 +110,8 @@ def faint(
         if progress is not None:
             progress(len(rows), len(points))
     # A simulation that came to nothing tells nothing.
-    changes = np.stack(rows) / np.array(scales)[:, None]
+    changes = np.array(rows).reshape(-1, len(here)) / np.array(scales)[:, None]
+    changes = np.concatenate([known, changes])
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     inside, residual_inside, noise = _compressed(changes, here)
     size = len(residual_inside)

@@ -40,6 +40,10 @@ class Followed:
     costs
         Share of the time at the end of each window -> squared misfit up to there, with that of the
         parameters to their prior.
+    columns
+        What nuisances do to all samples about there, shape (nuisances, n); None: not known.
+    fresh
+        Whether that is of just there.
     """
 
     nuisance: Array
@@ -51,6 +55,8 @@ class Followed:
     misfit: float = np.inf
     effort: float = 0.0
     costs: Mapping[float, float] = field(default_factory=dict)
+    columns: Array | None = None
+    fresh: bool = False
 
     @property
     def point(self) -> Point:

@@ -1,6 +1,7 @@
 """Hypotheses led to the ring's phase, each for itself, and what all samples then say of them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from analysis.engine.all_samples import all_samples_say, cost_of
 from analysis.engine.faint import faint
@@ -126,7 +127,11 @@ class FollowedSearch:
         for way in sorted(self._led, key=_farthest)[:RESTARTS]:
             if way.to_end:
                 start = _parameters_of(self._system, way)
-                nulls.append(follow_ring(self._system, start, everything=True, near=True))
+                nulls.append(
+                    follow_ring(
+                        self._system, start, everything=True, near=True, lent=self._nothing.columns
+                    )
+                )
         if min(one.misfit for one in (*self._led, *nulls)) > ARRIVED * count:
             return None
         return all_samples_say(self._refiner, self._led, min(nulls, key=cost_of), count)
@@ -137,7 +142,10 @@ class FollowedSearch:
 
     def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
         system, ahead = self._system, self._best.costs if self._led else None
-        found = follow_ring(system, nuisance, state, everything=True, ahead=ahead, near=near)
+        lent = self._lent() if near else None
+        found = follow_ring(
+            system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent
+        )
         if near and found.share < 1.0:
             self._effort += found.effort
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
@@ -148,8 +156,15 @@ class FollowedSearch:
                 found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
         self._keep(found)
 
+    def _lent(self) -> Array | None:
+        """What nuisances do, about what a new hypothesis is near to."""
+        best = self._best.columns
+        return self._nothing.columns if best is None else best
+
     def _keep(self, found: Followed) -> None:
         self._effort += found.effort
+        if _farthest(found) > _farthest(self._best):
+            found = replace(found, columns=None)
         self._led.append(found)
         if self._progress is not None:
             self._progress(len(self._led), len(self._led))

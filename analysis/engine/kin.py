@@ -57,6 +57,8 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
 def lead_from(system: System, law: Followed, state: State) -> Followed:
     """Lead a hypothesis that is near another from where that one has come to the end.
 
+    What nuisances do there is taken to be what they do here.
+
     Parameters
     ----------
     system
@@ -67,8 +69,9 @@ def lead_from(system: System, law: Followed, state: State) -> Followed:
         The free numbers to begin with.
     """
     return follow_ring(
-        system, law.nuisance, state, everything=True, near=True, ahead=law.costs, most=EFFORT
-    )
+        system, law.nuisance, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
+        lent=law.columns,
+    )  # fmt: skip
 
 
 def _alike(samples: Samples, law: Followed, known: str, other: str) -> State:

@@ -51,6 +51,7 @@ def follow_ring(
     near: bool = False,
     ahead: Mapping[float, float] | None = None,
     most: float = EFFORT,
+    lent: Array | None = None,
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -68,9 +69,11 @@ def follow_ring(
         Costs of another hypothesis: what stays far behind it is given up.
     most
         Whole simulations, after which no step is begun.
+    lent
+        See `Way`: for what is near another hypothesis, over the same samples.
     """
     samples = Samples(system, held=held, everything=everything)
-    way = Way(samples, Followed(nuisance, state))
+    way = Way(samples, Followed(nuisance, state), lent)
     costs: dict[float, float] = {}
     share = 0.0
     came: Followed | None = None
@@ -96,6 +99,7 @@ def follow_ring(
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
     lost = (one for one in lefts if one[0] > max(FAINT, way.allowed(one[1])))
     left, share = next(lost, lefts[-1])
+    columns, fresh = way.known()
     return replace(
         way.at,
         share=float(share),
@@ -105,4 +109,6 @@ def follow_ring(
         misfit=float(way.here @ way.here),
         effort=samples.effort,
         costs=costs,
+        columns=columns,
+        fresh=fresh,
     )

@@ -69,16 +69,29 @@ class _Step(NamedTuple):
 
 
 class Way:
-    """Where one is, and what every free number does about there, up to some share of the time."""
+    """Where one is, and what every free number does about there, up to some share of the time.
 
-    def __init__(self, samples: Samples, start: Followed) -> None:
+    Parameters
+    ----------
+    samples
+        By which it is led.
+    start
+        From where.
+    lent
+        What nuisances do to all samples about another hypothesis that is near, shape
+        (nuisances, n): that serves until a step tells that it does not hold here.
+    """
+
+    def __init__(self, samples: Samples, start: Followed, lent: Array | None = None) -> None:
         self._samples = samples
         self.at = start
         self.here = np.zeros(0)
         self._seen = 0.0
         self._columns: Array | None = None
+        self._fresh = False
         self._steps = np.zeros(0)
         self._settled = False
+        self._lent, self._serves = lent, False
 
     def window(self, passed: float) -> float:
         """Up to which share of the time to go next, as far as the ring is not lost.
@@ -153,21 +166,34 @@ class Way:
         near = share < 1.0 and float(here @ here) < THERE * len(here)
         if near or not float(here @ here) < lost * len(here):
             return False
-        fresh = self._columns is None
-        if fresh and self._settled:
-            return False
         if self._columns is None:
-            points, self._steps = self.at.neighbours()
-            rows = np.stack(self._samples.residuals(points, self._seen))
-            self._columns = (self.here - rows) / self._steps[:, None]
+            if self._settled:
+                return False
+            self._differences()
+        fresh = self._fresh
         fell = self._step(inside, best)
         self._settled |= fresh and fell < WORTH_ANEW
         if fell > 0.0:
             return True
-        if fresh or self._settled:
+        if fresh or self._settled or self._serves:
             return False
         self._columns = None
         return self.step(share, lost, best)
+
+    def _differences(self) -> None:
+        """What every number does here; where nuisances' was lent, only what is on is simulated."""
+        points, self._steps = self.at.neighbours()
+        columns = np.zeros((0, len(self.here)))
+        self._serves = self._lent is not None and self._seen == 1.0
+        if self._lent is not None and self._serves:
+            columns, self._lent = self._lent.copy(), None
+        known = len(columns)
+        self._fresh = known == 0
+        if len(points) > known:
+            rows = np.stack(self._samples.residuals(points[known:], self._seen))
+            own = (self.here - rows) / self._steps[known:, None]
+            columns = np.concatenate([columns, own])
+        self._columns = columns
 
     def _step(self, inside: NDArray[np.bool_], best: float) -> float:
         """By how much the cost fell; nothing: there is no step."""
@@ -204,10 +230,11 @@ class Way:
                 break
             found, times = farther, times * LONGER
         if found.fell <= 0.0:
+            self._serves = False
             return 0.0
         self._learn(found.there, found.residual)
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
-            self._columns = None
+            self._columns, self._serves = None, False
         return found.fell
 
     def _along(self, change: Array, inside: NDArray[np.bool_], before: float) -> "_Step":
@@ -225,4 +252,13 @@ class Way:
         missed = self.here - found - moved @ self._columns
         scaled = moved / self._steps
         self._columns += np.outer(scaled / self._steps, missed) / float(scaled @ scaled)
-        self.at, self.here = there, found
+        self.at, self.here, self._fresh = there, found, False
+
+    def known(self) -> tuple[Array | None, bool]:
+        """What nuisances do to all samples about where one is, and whether that is of just there.
+
+        None: it is not known of all of them.
+        """
+        if self._columns is None or self._seen < 1.0:
+            return None, False
+        return self._columns[: len(self.at.nuisance)], self._fresh
