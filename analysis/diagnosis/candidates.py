@@ -168,7 +168,7 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
         form_share=form,
         shareable=len(magnitudes) == 1,
         combinations=wholes,
-        chosen_terms=4 if effect.name == "geometry" else 0,
+        chosen_terms=12 if effect.name == "geometry" else 0,
         family=FAMILIES.get(effect.name, ""),
         grows=effect.name in GROWING,
     )

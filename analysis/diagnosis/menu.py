@@ -95,7 +95,7 @@ class Experiment:
         tones = tuple(tones_hz(Machine.from_rig(self.rig)))
         quieter = [replace(one, covariance=one.covariance / self.repeats) for one in like.bundles]
         bundles = tuple(_empty(one, asked, tones) for one in quieter)
-        return Recording(run, asked, 0.0, like.cables, bundles, like.has_pose, ())
+        return Recording(run, asked, 0.0, like.cables, bundles, like.has_pose, (), like.averaged_s2)
 
 
 def experiments(

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+OUTLIER = 6.0
+"""A sample farther from a line than so many typical distances is not counted."""
+
 LEAST_REST = 20
 """Samples at rest that a noise level needs."""
 
@@ -62,12 +65,14 @@ def about_bend(value: Array) -> float:
 
 
 def about_line(t_s: Array, value: Array) -> float:
-    """Standard deviation of samples about a straight line, outliers aside."""
+    """Standard deviation of samples about a straight line, those far off aside."""
     line = np.polynomial.Polynomial.fit(t_s, value, 1)(t_s)
     rest = value - line
-    typical = 1.4826 * np.median(np.abs(rest - np.median(rest)))
-    spread = float(rest.std(ddof=2))
-    return spread if spread < 2.0 * typical or typical == 0.0 else float(typical)
+    far = np.abs(rest - np.median(rest))
+    typical = float(np.median(far)) / 0.6745
+    # Half of the samples on one step of the electronics: then what is far off cannot be told.
+    near = far <= OUTLIER * typical if typical > 0.0 else np.ones(len(rest), dtype=bool)
+    return float(rest[near].std(ddof=min(2, int(near.sum()) - 1)))
 
 
 def stated_covariance(seen: "pd.DataFrame") -> Array:

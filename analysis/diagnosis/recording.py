@@ -40,6 +40,9 @@ LINES_HZ = 25.0
 LEAST_FRAMES, LEAST_REST_FRAMES = 20, 10
 """Poses that are of use, and those at rest that a noise level needs."""
 
+BENDS = 4
+"""Neighbours' means tell as much of the noise as so many times fewer samples at rest."""
+
 LEAST_NOISE_N = 2e-4
 """Below this the resolution of the electronics is the noise."""
 
@@ -77,6 +80,8 @@ class Recording:
         Whether the last bundle is the pose.
     notes
         What a reader must know.
+    averaged_s2
+        Of each of these cables: the variance of the instants whose values are one sample, s^2.
     """
 
     run: Run
@@ -86,6 +91,7 @@ class Recording:
     bundles: tuple[Bundle, ...]
     has_pose: bool
     notes: tuple[str, ...]
+    averaged_s2: tuple[float, ...]
 
     @property
     def rig(self) -> Rig:
@@ -115,8 +121,8 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
     if not cables:
         raise DataError("no cable has usable tension samples", where=str(run.folder))
     notes: list[str] = []
-    tensions = [_tension(run, cable, excitation, shift_s, notes) for cable in cables]
-    bundles = _instants(tensions, excitation, shift_s, notes)
+    read = [_tension(run, cable, excitation, shift_s, notes) for cable in cables]
+    bundles = _instants([one for one, _ in read], excitation, shift_s, notes)
     seen = None if pose is None else _pose(run, pose, excitation, shift_s, notes)
     if seen is not None:
         bundles += _instants([seen], excitation, shift_s, notes)
@@ -133,7 +139,14 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
     if lost:
         notes.append(f"no usable tension of cable {', '.join(lost)}")
     return Recording(
-        run, excitation, shift_s, cables, tuple(bundles), seen is not None, tuple(notes)
+        run,
+        excitation,
+        shift_s,
+        cables,
+        tuple(bundles),
+        seen is not None,
+        tuple(notes),
+        tuple(averaged_s2 for _, averaged_s2 in read),
     )
 
 
@@ -171,7 +184,8 @@ def segments(
 
 def _tension(
     run: Run, cable: int, excitation: Excitation, shift_s: float, notes: list[str]
-) -> Bundle:
+) -> tuple[Bundle, float]:
+    """A cable's tension, and the variance of the instants that one sample is the mean of, s^2."""
     good = run.cable_tension(cable)
     t_s = good["t_s"].to_numpy(dtype=float)
     value = good["tension_n"].to_numpy(dtype=float)
@@ -179,15 +193,17 @@ def _tension(
     t_s, value = t_s[keep], value[keep]
     interval = float(np.median(np.diff(t_s)))
     block = max(int(1.0 / (interval * MOST_HZ)), 1)
+    averaged_s2 = 0.0
     if block > 1:
         whole = len(t_s) // block * block
+        averaged_s2 = float(np.median(t_s[:whole].reshape(-1, block).var(axis=1)))
         t_s = t_s[:whole].reshape(-1, block).mean(axis=1)
         value = value[:whole].reshape(-1, block).mean(axis=1)
     rest = at_rest(t_s, excitation, shift_s)
     if run.start.motion_start_known and np.count_nonzero(rest) >= LEAST_REST:
-        sigma = about_line(t_s[rest], value[rest])
+        sigma, noise_from = about_line(t_s[rest], value[rest]), int(rest.sum())
     else:
-        sigma = about_bend(value)
+        sigma, noise_from = about_bend(value), len(value) // BENDS
         notes.append(f"cable {cable}: no rest to take the noise from; {sigma:.4f} N is an estimate")
     stated = (one.sampling_sigma_s for one in run.start.nodes if one.cable == cable)
     found = Bundle(
@@ -201,8 +217,9 @@ def _tension(
         kind="tension",
         base_share=BASE_SHARE,
         tones_hz=tuple(tones_hz(Machine.from_rig(run.rig))),
+        noise_from=noise_from,
     )
-    return with_instants(found, (next(stated, None) or 0.0) / np.sqrt(block))
+    return with_instants(found, (next(stated, None) or 0.0) / np.sqrt(block)), averaged_s2
 
 
 def _instants(

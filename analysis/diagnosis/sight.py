@@ -1,6 +1,6 @@
 """What cells and camera would have reported of a simulation."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,7 @@ def seen_by(recording: Recording, simulation: Simulation, sight: Sight) -> Predi
     times = np.full((longest, 8), simulation.t_s[0])
     for cable, one in zip(recording.cables, tensions, strict=True):
         times[: len(one.t_s), cable - 1] = one.t_s - sight.start_s - sight.late_s[cable - 1]
+    simulation = _averaged(simulation, recording)
     stamps = recording.bundles[-1].t_s - sight.start_s if recording.has_pose else simulation.t_s[:1]
     seen = observe(simulation, sight.effects, tension_t_s=times, pose_t_s=stamps)
     found = [
@@ -59,6 +60,21 @@ def seen_by(recording: Recording, simulation: Simulation, sight: Sight) -> Predi
     if recording.has_pose:
         found.append(_finite(seen.pose + sight.pose_zero))
     return found
+
+
+def _averaged(simulation: Simulation, recording: Recording) -> Simulation:
+    """With tensions as means over the instants of a sample, which take from what is fast.
+
+    To second order: a mean over instants of variance s^2 adds half of s^2 times the curvature.
+    """
+    if not any(recording.averaged_s2):
+        return simulation
+    variance_s2 = np.zeros(simulation.tension_n.shape[1])
+    variance_s2[[cable - 1 for cable in recording.cables]] = recording.averaged_s2
+    step_s = float(simulation.t_s[1] - simulation.t_s[0])
+    curvature = np.zeros_like(simulation.tension_n)
+    curvature[1:-1] = np.diff(simulation.tension_n, n=2, axis=0) / step_s**2
+    return replace(simulation, tension_n=simulation.tension_n + 0.5 * variance_s2 * curvature)
 
 
 def _finite(values: Array) -> Array:

@@ -9,10 +9,11 @@ from analysis.engine.calibrate import Calibrated
 from analysis.engine.confirm import Confirmation, confirm
 from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
-from analysis.engine.judge import Judgement, judge
+from analysis.engine.judge import NOISE, Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.search import Search, look, search
 from analysis.engine.system import Array, System
+from analysis.engine.whiten import noise_leaves
 
 Stage = Literal["align", "locate", "name", "confirm"]
 
@@ -20,8 +21,8 @@ POORLY = 2.0
 """A hypothesis whose misfit is more than this for each feature leaves something unexplained."""
 
 
-REMAINS = 1.25
-"""Where it was led to the ring's phase: what is more than this for each sample."""
+REMAINS = 0.2
+"""Where it was led to the ring's phase: what is so much more than noise for each sample."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +117,9 @@ def diagnose(
     problem = searched.calibrated.problem
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
-    judgement = judge(searched.fitted, candidates, lost=searched.lost)
-    remains = _remains(searched, judgement)
+    noise = max(noise_leaves(system.bundles), NOISE)
+    judgement = judge(searched.fitted, candidates, lost=searched.lost, noise=noise)
+    remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
     return Diagnosis(
@@ -125,7 +127,7 @@ def diagnose(
     )
 
 
-def _remains(searched: Search, judgement: Judgement) -> Remains:
+def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
     chosen = judgement.chosen
     problem, weighed = chosen.problem, chosen.weighed
     residual = problem.residual + problem.nuisance @ (problem.at - weighed.nuisance)
@@ -133,7 +135,7 @@ def _remains(searched: Search, judgement: Judgement) -> Remains:
     scaled = _allowed(residual, weighed.variance, problem.base)
     found = locate(searched.system.bundles, problem, np.where(used, scaled, 0.0))
     if searched.faint and not np.isnan(chosen.left):
-        return Remains(chosen.left, chosen.left > REMAINS, found)
+        return Remains(chosen.left, chosen.left > noise + REMAINS, found)
     misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
     return Remains(misfit, misfit > POORLY, found)
 

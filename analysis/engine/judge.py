@@ -42,7 +42,7 @@ CERTAIN = 0.9
 """A cause named alone is at least this likely."""
 
 NOISE, DOUBTFUL = 1.06, 8.0
-"""The squared misfit of a sample that noise allows, known as well as a second of rest tells it; and
+"""The squared misfit of a sample that noise allows where it is known, and simulators; and
 how much more leaves it even whether what explains best is what is there, for one whose law has this
 for an error of form: what is known exactly must explain to the noise."""
 
@@ -85,7 +85,11 @@ class Judgement:
 
 
 def judge(
-    fitted: Sequence[Fitted], candidates: Mapping[str, Candidate], *, lost: bool = False
+    fitted: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
+    *,
+    lost: bool = False,
+    noise: float = NOISE,
 ) -> Judgement:
     """Weigh the fitted hypotheses.
 
@@ -97,7 +101,10 @@ def judge(
         By name.
     lost
         The system rings, and no hypothesis could be led to the ring's phase.
+    noise
+        The squared misfit of a sample that noise leaves, where that is more than `NOISE`.
     """
+    noise = max(noise, NOISE)
     scores = np.array([_plausible_score(one) for one in fitted])
     nothing = max(
         (score for score, one in zip(scores, fitted, strict=True) if not one.hypothesis.parts),
@@ -108,7 +115,7 @@ def judge(
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
     temper = max(TEMPER, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
-    if best.left < NOISE:
+    if best.left < noise:
         temper = min(temper, MOST_AT_NOISE)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
@@ -137,21 +144,23 @@ def judge(
             break
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
-    doubt = doubt_of(chosen, candidates, lost=lost)
+    doubt = doubt_of(chosen, candidates, lost=lost, noise=noise)
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
     causes = tuple(doubted(one, doubt) for one in sure)
     verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)
     return Judgement(verdict, causes, chosen, tuple(float(w) for w in weights), doubt)
 
 
-def doubt_of(fitted: Fitted, candidates: Mapping[str, Candidate], *, lost: bool) -> float:
+def doubt_of(
+    fitted: Fitted, candidates: Mapping[str, Candidate], *, lost: bool, noise: float = NOISE
+) -> float:
     """The probability that what explains best is not what is there, by what it leaves."""
     if lost:
         return min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
     if np.isnan(fitted.left):
         return 0.0
     form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)
-    beyond = max(fitted.left - NOISE, 0.0) / max(DOUBTFUL * form, SUREST)
+    beyond = max(fitted.left - noise, 0.0) / max(DOUBTFUL * form, SUREST)
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
 
 

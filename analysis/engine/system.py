@@ -73,6 +73,8 @@ class Bundle:
     jitter
         What one standard deviation of its instant does to each sample, shape (n, m): the rate at
         which values change there, times that; None: instants are known.
+    noise_from
+        How many samples the covariance was taken from; 0: it is known.
     """
 
     names: tuple[str, ...]
@@ -86,6 +88,7 @@ class Bundle:
     base_share: float = 0.0
     tones_hz: tuple[float, ...] = ()
     jitter: Array | None = None
+    noise_from: int = 0
 
 
 @dataclass(frozen=True)

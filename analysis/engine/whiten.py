@@ -1,5 +1,7 @@
 """Residuals in units of their noise: that of values, and that of the instants they are of."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,3 +52,23 @@ def covariance_over(bundle: Bundle, inside: NDArray[np.bool_] | NDArray[np.int64
         return bundle.covariance
     jitter = bundle.jitter[inside]
     return np.asarray(bundle.covariance + jitter.T @ jitter / max(len(jitter), 1))
+
+
+def noise_leaves(bundles: Sequence[Bundle]) -> float:
+    """The squared misfit of a sample that noise leaves, on average, as well as it is known.
+
+    A variance that was taken from n samples is off by the square root of 2 / n, and its inverse is
+    too large by 2 / n on average: all of a bundle's residuals share that. One standard deviation
+    is allowed.
+
+    Parameters
+    ----------
+    bundles
+        With their samples.
+    """
+    counts = np.array([one.value.size for one in bundles], dtype=float)
+    freedom = np.array([max(one.noise_from - 2.0, 3.0) if one.noise_from else np.inf
+                        for one in bundles])  # fmt: skip
+    weights = counts / counts.sum()
+    mean = float(weights @ (1.0 / (1.0 - 2.0 / freedom)))
+    return mean + float(np.sqrt(2.0 / counts.sum() + np.sum(weights**2 * 2.0 / freedom)))

@@ -1,10 +1,13 @@
 """How unsure the instants of samples are, told by the floor between the lines of their spectra."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from analysis.diagnosis.noise import instants_s, with_instants
+from analysis.diagnosis.noise import about_line, instants_s, with_instants
 from analysis.engine.system import Array, Bundle, Segment
+from analysis.engine.whiten import noise_leaves
 from cdpr8.rigfile import Excitation
 
 NOISE_N = 0.005
@@ -81,3 +84,30 @@ def test_unsure_instants_count_in_proportion_to_the_rate() -> None:
     driven = 2e-4 * 2.0 * np.pi * 2.06 * 7.0 / np.sqrt(2.0)
     assert np.sqrt(np.mean(jitter[moving] ** 2)) == pytest.approx(driven, rel=0.2)
     assert with_instants(first, 0.0).jitter is None
+
+
+def test_the_spread_of_a_short_rest_is_never_taken_for_half_of_it() -> None:
+    generator = np.random.default_rng(6)
+    t_s = np.arange(46) / 43.0
+    found = [about_line(t_s, generator.standard_normal(46)) for _ in range(2000)]
+    assert np.mean(found) == pytest.approx(1.0, rel=0.02)
+    assert min(found) > 0.6
+
+
+def test_a_sample_far_off_does_not_widen_the_noise() -> None:
+    generator = np.random.default_rng(7)
+    t_s, value = np.arange(100) / 43.0, generator.standard_normal(100)
+    value[40] += 50.0
+    assert about_line(t_s, value) == pytest.approx(1.0, rel=0.2)
+
+
+def test_what_noise_leaves_is_as_unsure_as_the_rest_it_was_taken_from() -> None:
+    """One in six recordings leaves more than one standard deviation more than the mean."""
+    generator = np.random.default_rng(8)
+    rest, count = 40, 400
+    bundles = [replace(one, noise_from=rest) for one in _bundles(0.0, count / WHOLE_S, generator)]
+    taken = generator.chisquare(rest - 2, (4000, 8)) / (rest - 2)
+    left = np.mean(generator.chisquare(count, (4000, 8)) / count / taken, axis=1)
+    assert np.mean(left > noise_leaves(bundles)) == pytest.approx(0.16, abs=0.04)
+    exact = [replace(one, noise_from=0) for one in bundles]
+    assert noise_leaves(exact) == pytest.approx(1.0 + np.sqrt(2.0 / (8 * count)), rel=1e-3)
