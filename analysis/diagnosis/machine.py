@@ -32,6 +32,7 @@ LATE_S = 0.3
 """Cameras and cells may be late by so much: a simulation goes on for longer than what is seen."""
 
 GROUP = 16
+"""As many tasks as lanes are simulated by one thread, and looked at."""
 
 GUARD = 0.08
 """Share of critical damping that keeps the platform from ringing, where that is asked for."""
@@ -49,6 +50,14 @@ class _Job:
     key: tuple[object, ...]
     task: Task
     sight: Sight
+
+
+@dataclass(frozen=True)
+class _Share:
+    """Some points of one run: place of the point -> what to simulate for it."""
+
+    record: int
+    jobs: Mapping[int, Sequence[_Job]]
 
 
 class RecordedMachine:
@@ -118,19 +127,54 @@ class RecordedMachine:
         proportion to the damping: that of half the damping, twice, less that of the whole has the
         ring of neither and no bias to first order.
         """
-        predictions: list[Prediction] = [[] for _ in points]
-        for record, recording in enumerate(self.recordings):
-            jobs = [[self.job(point, record, share) for share in _GUARDS[point.ring]]
-                    for point in points]  # fmt: skip
-            done = self._solve({job.key: job.task for group in jobs for job in group})
-            seen: dict[tuple[object, ...], Prediction] = {}
-            for group, whole in zip(jobs, predictions, strict=True):
-                key = tuple((job.key, job.sight.key) for job in group)
-                if key not in seen:
-                    simulation = _without_bias([done[job.key] for job in group])
-                    seen[key] = seen_by(recording, simulation, group[0].sight)
-                whole.extend(seen[key])
-        return [reduce(prediction) for prediction in predictions]
+        shares = [part for record in range(len(self.recordings))
+                  for part in self._shares(points, record)]  # fmt: skip
+        found: list[dict[int, Prediction]] = [{} for _ in self.recordings]
+        for share, seen in zip(shares, self._all(shares), strict=True):
+            found[share.record].update(seen)
+        return [
+            reduce([bundle for of_record in found for bundle in of_record[place]])
+            for place in range(len(points))
+        ]
+
+    def _shares(self, points: Sequence[Point], record: int) -> list[_Share]:
+        """One run of all points, in shares that are simulated side by side."""
+        together: dict[tuple[object, ...], dict[int, list[_Job]]] = {}
+        for place, point in enumerate(points):
+            jobs = [self.job(point, record, share) for share in _GUARDS[point.ring]]
+            together.setdefault(tuple(job.key for job in jobs), {})[place] = jobs
+        # Like simulations beside each other.
+        alike = [together[key] for key in sorted(together, key=str)]
+        count = len({job.key for places in alike for jobs in places.values() for job in jobs})
+        self.simulated += count
+        size = 1 if count / self._workers < LANES_FROM else min(GROUP, -(-count // self._workers))
+        each = max(size * len(alike) // count, 1)
+        return [
+            _Share(record, {place: jobs for places in alike[first : first + each]
+                            for place, jobs in places.items()})
+            for first in range(0, len(alike), each)
+        ]  # fmt: skip
+
+    def _all(self, shares: Sequence[_Share]) -> list[dict[int, Prediction]]:
+        if self._workers == 1 or len(shares) == 1:
+            return [self._seen(share) for share in shares]
+        with ThreadPoolExecutor(self._workers) as pool:
+            return list(pool.map(self._seen, shares))
+
+    def _seen(self, share: _Share) -> dict[int, Prediction]:
+        """What is seen of a share: point -> its samples."""
+        tasks = {job.key: job.task for jobs in share.jobs.values() for job in jobs}
+        solved = simulate_many(list(tasks.values()), output_rate_hz=OUTPUT_HZ, fewest=LANES_FROM)
+        done = dict(zip(tasks, solved, strict=True))
+        seen: dict[tuple[object, ...], Prediction] = {}
+        found: dict[int, Prediction] = {}
+        for place, jobs in share.jobs.items():
+            key = tuple((job.key, job.sight.key) for job in jobs)
+            if key not in seen:
+                simulation = _without_bias([done[job.key] for job in jobs])
+                seen[key] = seen_by(self.recordings[share.record], simulation, jobs[0].sight)
+            found[place] = seen[key]
+        return found
 
     def job(self, point: Point, record: int, guard: float = 0.0) -> _Job:
         """What one run of a point is, its cables damped by a share of the guard."""
@@ -201,30 +245,6 @@ class RecordedMachine:
         runs = [simulate_task(job.task, output_rate_hz=OUTPUT_HZ) for job in jobs]
         highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
         return [float(one) for one in highest]
-
-    def _solve(self, tasks: Mapping[tuple[object, ...], Task]) -> dict[Any, Simulation]:
-        self.simulated += len(tasks)
-        keys = sorted(tasks, key=str)
-        count = len(keys)
-        if count < LANES_FROM or count / self._workers < LANES_FROM:
-            size = 1
-        else:
-            size = min(GROUP, -(-count // self._workers))
-        parts = [keys[first : first + size] for first in range(0, count, size)]
-
-        def solve(part: list[Any]) -> list[Simulation]:
-            own = [tasks[key] for key in part]
-            return simulate_many(own, output_rate_hz=OUTPUT_HZ, fewest=LANES_FROM)
-
-        if self._workers == 1 or len(parts) == 1:
-            solved = [solve(part) for part in parts]
-        else:
-            with ThreadPoolExecutor(self._workers) as pool:
-                solved = list(pool.map(solve, parts))
-        return {
-            key: one for part, found in zip(parts, solved, strict=True)
-            for key, one in zip(part, found, strict=True)
-        }  # fmt: skip
 
 
 _OUTSIDE = ("cell", "camera", "clock")

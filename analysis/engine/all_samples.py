@@ -11,10 +11,40 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
+from analysis.engine.system import System
 
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
+
+CONTENDS = 30.0
+"""What is no farther behind the best, in squared misfit, is led through with differences of its
+own."""
+
+
+def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
+    """Hypotheses, those that may be the best led on with what nuisances do about themselves.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    led
+        To all samples.
+    """
+    found = list(led)
+    for _ in found:
+        least = min(cost_of(one) for one in found) + CONTENDS
+        asked = [k for k, one in enumerate(found) if one.borrowed and cost_of(one) < least]
+        if not asked:
+            break
+        place = min(asked, key=lambda k: cost_of(found[k]))
+        one = found[place]
+        through = follow_ring(system, one.nuisance, one.state, everything=True, near=True)
+        closer = through if cost_of(through) < cost_of(one) else one
+        found[place] = replace(closer, borrowed=False)
+    return found
 
 
 def all_samples_say(

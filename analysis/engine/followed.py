@@ -44,6 +44,8 @@ class Followed:
         What nuisances do to all samples about there, shape (nuisances, n); None: not known.
     fresh
         Whether that is of just there.
+    borrowed
+        Whether that is still, but for corrections, what was lent by another hypothesis.
     """
 
     nuisance: Array
@@ -57,6 +59,7 @@ class Followed:
     costs: Mapping[float, float] = field(default_factory=dict)
     columns: Array | None = None
     fresh: bool = False
+    borrowed: bool = False
 
     @property
     def point(self) -> Point:

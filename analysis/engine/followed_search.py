@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from analysis.engine.all_samples import all_samples_say, cost_of
+from analysis.engine.all_samples import all_samples_say, cost_of, led_through
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
@@ -123,6 +123,7 @@ class FollowedSearch:
     def fitted(self) -> list[Fitted] | None:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""
         count = len(self._samples.shares)
+        self._led = led_through(self._system, self._led)
         nulls = [self._nothing]
         for way in sorted(self._led, key=_farthest)[:RESTARTS]:
             if way.to_end:

@@ -99,9 +99,8 @@ def follow_ring(
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
     lost = (one for one in lefts if one[0] > max(FAINT, way.allowed(one[1])))
     left, share = next(lost, lefts[-1])
-    columns, fresh = way.known()
     return replace(
-        way.at,
+        way.arrived(),
         share=float(share),
         left=left,
         telling=float(next((one[1] for one in lefts if one[0] > TELLING), lefts[-1][1])),
@@ -109,6 +108,4 @@ def follow_ring(
         misfit=float(way.here @ way.here),
         effort=samples.effort,
         costs=costs,
-        columns=columns,
-        fresh=fresh,
     )

@@ -11,7 +11,7 @@ from analysis.engine.system import Array, Candidate, Point, Setting, System
 Progress = Callable[[int, int], None]
 """Told how many points are done, of how many."""
 
-BATCH = 32
+BATCH = 128
 """Points simulated at a time."""
 
 Columns = dict[tuple[str, int], Array]

@@ -3,6 +3,7 @@
 A step is Gauss and Newton's, by differences that serve until it leaves where they hold.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -254,11 +255,9 @@ class Way:
         self._columns += np.outer(scaled / self._steps, missed) / float(scaled @ scaled)
         self.at, self.here, self._fresh = there, found, False
 
-    def known(self) -> tuple[Array | None, bool]:
-        """What nuisances do to all samples about where one is, and whether that is of just there.
-
-        None: it is not known of all of them.
-        """
+    def arrived(self) -> Followed:
+        """Where one is, with what nuisances do to all samples about there, if that is known."""
         if self._columns is None or self._seen < 1.0:
-            return None, False
-        return self._columns[: len(self.at.nuisance)], self._fresh
+            return self.at
+        columns = self._columns[: len(self.at.nuisance)]
+        return replace(self.at, columns=columns, fresh=self._fresh, borrowed=self._serves)
