@@ -104,10 +104,10 @@ class FollowedSearch:
             return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
         for one in self._fresh(self._kin(others)):
+            if self._best.to_end and not self._near:
+                break
             if (not self._near or one.log_score > least) and self._effort < EFFORT:
                 self._lead(one.point.nuisance, one.state, near=self._near)
-                if self._best.to_end and not self._near:
-                    break
         self._lead_kin()
         for _ in range(self._most_causes - 1):
             if not self._one_more():

@@ -41,6 +41,10 @@ of it;"""
 WORTH_ON_THE_WAY = 0.003
 """or, in a window that is not the last, than this share of it."""
 
+HOPELESS = 20.0
+"""What costs so many times more than another hypothesis, after all that differences promised, is
+not led on with fresh ones."""
+
 CATCHES_UP = 0.1
 """Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
 
@@ -89,6 +93,7 @@ class Way:
         self.here = np.zeros(0)
         self._seen = 0.0
         self._columns: Array | None = None
+        self._last: Array | None = None
         self._fresh = False
         self._steps = np.zeros(0)
         self._settled = False
@@ -111,7 +116,7 @@ class Way:
             farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
-            self.here, self._seen, self._columns = whole, share, None
+            self.here, self._seen, self._columns, self._last = whole, share, None, None
         while share - passed > NARROWEST and self.left(share) > REACH:
             share = 0.5 * (passed + share)
         return share
@@ -120,7 +125,8 @@ class Way:
         """Simulate up to a share of the time, if that was not done."""
         if share > self._seen:
             (self.here,) = self._samples.residuals([self.at.point], share)
-            self._seen, self._columns, self._settled = share, None, False
+            self._seen, self._columns, self._last = share, None, None
+            self._settled = False
 
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
@@ -168,7 +174,8 @@ class Way:
         if near or not float(here @ here) < lost * len(here):
             return False
         if self._columns is None:
-            if self._settled:
+            hopeless = self._last is not None and self.cost(share) > HOPELESS * best
+            if self._settled or hopeless:
                 return False
             self._differences()
         fresh = self._fresh
@@ -194,7 +201,7 @@ class Way:
             rows = np.stack(self._samples.residuals(points[known:], self._seen))
             own = (self.here - rows) / self._steps[known:, None]
             columns = np.concatenate([columns, own])
-        self._columns = columns
+        self._columns = self._last = columns
 
     def _step(self, inside: NDArray[np.bool_], best: float) -> float:
         """By how much the cost fell; nothing: there is no step."""
@@ -256,8 +263,10 @@ class Way:
         self.at, self.here, self._fresh = there, found, False
 
     def arrived(self) -> Followed:
-        """Where one is, with what nuisances do to all samples about there, if that is known."""
-        if self._columns is None or self._seen < 1.0:
+        """Where one is, with what nuisances do to all samples about there, as far as is known."""
+        columns = self._last if self._columns is None else self._columns
+        if columns is None or self._seen < 1.0:
             return self.at
-        columns = self._columns[: len(self.at.nuisance)]
-        return replace(self.at, columns=columns, fresh=self._fresh, borrowed=self._serves)
+        fresh = self._fresh and self._columns is not None
+        columns = columns[: len(self.at.nuisance)]
+        return replace(self.at, columns=columns, fresh=fresh, borrowed=self._serves)
