@@ -25,7 +25,7 @@ a way that nothing missed."""
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
 
-EFFORT = 2500.0
+EFFORT = 3000.0
 """Whole simulations, after which nothing new is tried."""
 
 ARRIVED = 2.5
@@ -108,12 +108,12 @@ class FollowedSearch:
                 break
             if (not self._near or one.log_score > least) and self._effort < EFFORT:
                 self._lead(one.point.nuisance, one.state, near=self._near)
-        self._lead_kin()
+        self._lead_kin(self._best)
         for _ in range(self._most_causes - 1):
             if not self._one_more():
                 break
             self._one_less(self._best)
-            self._lead_kin()
+            self._lead_kin(self._best)
 
     @property
     def arrived(self) -> bool:
@@ -183,9 +183,9 @@ class FollowedSearch:
         one, other = (self._refiner.candidates[name].family for (name,) in names)
         return bool(one) and one == other
 
-    def _lead_kin(self) -> None:
-        """From where the best was led to the end, other laws of each of its kinds are led."""
-        best, candidates = self._best, self._refiner.candidates
+    def _lead_kin(self, best: Followed) -> None:
+        """From where a hypothesis was led to the end, other laws of each of its kinds are led."""
+        candidates = self._refiner.candidates
         if best.state is None or not best.to_end:
             return
         arrived = {one.names for one in self._led if one.to_end}
@@ -260,6 +260,7 @@ class FollowedSearch:
             fewer = lead_from(self._system, whole, state)
             self._keep(fewer)
             if cost_of(fewer) < close:
+                self._lead_kin(fewer)
                 self._one_less(fewer)
 
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:

@@ -55,6 +55,10 @@ STRAIGHT = 0.5
 """A step that brings less than this of what it promises, or as much more, has left where
 differences hold: what everything does is simulated anew."""
 
+RENEWED = 4
+"""Then, where what parameters do was lent by another hypothesis, it is what is on that is simulated
+anew, so many times."""
+
 HALFWAY = 0.5
 """Of a step that brings less of what it promises, shorter ones are tried:"""
 
@@ -97,7 +101,7 @@ class Way:
         self._fresh = False
         self._steps = np.zeros(0)
         self._settled = False
-        self._lent, self._serves = lent, False
+        self._lent, self._serves, self._renewed = lent, False, 0
 
     def window(self, passed: float) -> float:
         """Up to which share of the time to go next, as far as the ring is not lost.
@@ -242,7 +246,11 @@ class Way:
             return 0.0
         self._learn(found.there, found.residual)
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
-            self._columns, self._serves = None, False
+            if self._serves and self._renewed < RENEWED:
+                self._lent, self._renewed = self._columns[: len(at)], self._renewed + 1
+            else:
+                self._serves = False
+            self._columns = None
         return found.fell
 
     def _along(self, change: Array, inside: NDArray[np.bool_], before: float) -> "_Step":
