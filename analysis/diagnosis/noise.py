@@ -33,13 +33,16 @@ LOWEST_BINS = 3
 QUIET = 0.25
 """Share of a spectrum's bins that no line is expected to reach, however much rings."""
 
+AGREES = 0.25
+"""Share of the channels, by how much each tells, that instants are no surer than."""
+
 LEAST_SAMPLES = 50
 """That a floor needs."""
 
 REGULAR = 1.5
 """A longer interval than so many usual ones is a gap."""
 
-SURE, LEAST_INSTANT_S = 3.0, 1e-5
+SURE, LEAST_INSTANT_S = 5.0, 1e-5
 """Instants are unsure where the floor tells it by so many standard deviations, and by this much."""
 
 
@@ -132,28 +135,30 @@ def _instants_s(
     within_s: tuple[float, float],
 ) -> float:
     """The same, of a stretch of time."""
-    excess, power, floors, still = [], [], [], []
+    excess, power, still = [], [], []
     for bundle in bundles:
         chosen = (bundle.t_s >= within_s[0]) & (bundle.t_s < within_s[1])
         piece = _without_gaps(bundle.t_s, np.flatnonzero(chosen))
         if len(piece) < LEAST_SAMPLES:
             continue
         t_s, value = bundle.t_s[piece], bundle.value[piece]
-        floor, noise = _floor(t_s, value, excitation.frequency_hz), np.diag(bundle.covariance)
+        noise = np.diag(bundle.covariance)
         rest = int(at_rest(bundle.t_s, excitation, shift_s).sum())
         spread = np.hypot(2.0 / np.sqrt(QUIET * len(piece)), np.sqrt(2.0 / max(rest, 1)))
-        excess.append(floor - noise)
+        excess.append(_floor(t_s, value, excitation.frequency_hz) - noise)
         power.append(np.mean(np.gradient(value, t_s, axis=0) ** 2, axis=0))
-        floors.append(spread * floor)
         still.append(spread * noise)
     if not excess:
         return 0.0
     rate = np.concatenate(power)
-    # Where rings fill a spectrum its floor is high: that counts for little.
-    weight = rate / np.concatenate(floors) ** 2
-    square = float(weight @ np.concatenate(excess)) / float(weight @ rate)
-    unsure = float(np.linalg.norm(weight * np.concatenate(still))) / float(weight @ rate)
-    return float(np.sqrt(square)) if square > max(SURE * unsure, LEAST_INSTANT_S**2) else 0.0
+    squares = np.concatenate(excess) / rate
+    known = (rate / np.concatenate(still)) ** 2
+    # Unsure instants raise all floors alike; rings and what sticks some more than others.
+    order = np.argsort(squares)
+    upto = np.cumsum(known[order]) / known.sum()
+    square = float(squares[order][np.searchsorted(upto, AGREES)])
+    least = max(SURE / float(np.sqrt(known.sum())), LEAST_INSTANT_S**2)
+    return float(np.sqrt(square)) if square > least else 0.0
 
 
 def with_instants(bundle: Bundle, instant_s: float) -> Bundle:
