@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,16 +125,26 @@ def instants_s(bundles: Sequence[Bundle], excitation: Excitation, shift_s: float
     start_s, end_s = excitation.start_s + shift_s, excitation.end_s + shift_s
     middle_s = 0.5 * (start_s + end_s)
     parts = ((start_s, end_s), (start_s, middle_s), (middle_s, end_s))
-    return min(_instants_s(bundles, excitation, shift_s, part) for part in parts)
+    told = [_told(bundles, excitation, shift_s, part) for part in parts]
+    square = min(one.square_s2 for one in told)
+    least = max(SURE * told[0].unsure_s2, LEAST_INSTANT_S**2)
+    return float(np.sqrt(square)) if told[0].square_s2 > least and square > 0.0 else 0.0
 
 
-def _instants_s(
+class _Told(NamedTuple):
+    """The variance of instants, and how unsure it is where they are known."""
+
+    square_s2: float
+    unsure_s2: float
+
+
+def _told(
     bundles: Sequence[Bundle],
     excitation: Excitation,
     shift_s: float,
     within_s: tuple[float, float],
-) -> float:
-    """The same, of a stretch of time."""
+) -> _Told:
+    """What a stretch of time tells; nothing is as good as infinitely unsure."""
     excess, power, still = [], [], []
     for bundle in bundles:
         chosen = (bundle.t_s >= within_s[0]) & (bundle.t_s < within_s[1])
@@ -149,7 +159,7 @@ def _instants_s(
         power.append(np.mean(np.gradient(value, t_s, axis=0) ** 2, axis=0))
         still.append(spread * noise)
     if not excess:
-        return 0.0
+        return _Told(np.inf, np.inf)
     rate = np.concatenate(power)
     squares = np.concatenate(excess) / rate
     known = (rate / np.concatenate(still)) ** 2
@@ -157,8 +167,7 @@ def _instants_s(
     order = np.argsort(squares)
     upto = np.cumsum(known[order]) / known.sum()
     square = float(squares[order][np.searchsorted(upto, AGREES)])
-    least = max(SURE / float(np.sqrt(known.sum())), LEAST_INSTANT_S**2)
-    return float(np.sqrt(square)) if square > least else 0.0
+    return _Told(square, 1.0 / float(np.sqrt(known.sum())))
 
 
 def with_instants(bundle: Bundle, instant_s: float) -> Bundle:
