@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from analysis.diagnosis.recording import recording
+from analysis.diagnosis.sight import Sight, seen_by
 from cdpr8.runfolder import Run, load_run, sample_data_folder
+from model import simulate
 
 STATED_S = 2.4e-4
 
@@ -40,8 +42,41 @@ def test_where_a_run_states_nothing_its_noise_tells_it(run: Run) -> None:
     silent = recording(stating(run, None), None)
     stated = recording(stating(run, STATED_S), None)
     found, known = silent.bundles[0].jitter, stated.bundles[0].jitter
-    assert found is not None and known is not None
+    assert found is not None
+    assert known is not None
     assert np.linalg.norm(found) == pytest.approx(np.linalg.norm(known), rel=0.35)
     (note,) = (one for one in silent.notes if "instants" in one)
     assert "counted as noise" in note
     assert not any("instants" in one for one in stated.notes)
+
+
+def test_an_averaged_sample_is_simulated_as_an_average(run: Run) -> None:
+    """Four readings at 1200 Hz: what a ring loses to their mean, to a fifth."""
+    whole = recording(run, None)
+    happened = simulate(run.rig, run.start.excitation, output_rate_hz=333.0)
+    offsets_s = (np.arange(4) - 1.5) / 1200.0
+
+    def tension(late_s: float, averaged_s2: float) -> np.ndarray:
+        looked = replace(whole, averaged_s2=(averaged_s2,) * 8)
+        sight = Sight((), 0.0, np.zeros(6), np.full(8, late_s))
+        return np.concatenate(seen_by(looked, happened, sight)[:8])
+
+    mean = np.mean([tension(one, 0.0) for one in offsets_s], axis=0)
+    lost = tension(0.0, 0.0) - mean
+    missed = tension(0.0, float(np.var(offsets_s))) - mean
+    assert np.sqrt(np.mean(lost**2)) > 5e-4
+    assert np.sqrt(np.mean(missed**2)) < 0.2 * np.sqrt(np.mean(lost**2))
+
+
+def test_fast_tensions_are_averaged_and_say_over_how_long(run: Run) -> None:
+    table = run.tension
+    first = table[table["cable"] == 1]
+    fast = first.iloc[np.repeat(np.arange(len(first)), 8)].copy()
+    interval_s = float(np.median(np.diff(first["t_s"])))
+    fast["t_s"] += np.tile(np.arange(8) * interval_s / 8.0, len(first))
+    found = recording(replace(run, tension=fast), None)
+    (bundle,) = found.bundles
+    block = round(len(fast) / len(bundle.t_s))
+    assert block == int(8.0 / (250.0 * interval_s))
+    step_s = interval_s / 8.0
+    assert found.averaged_s2[0] == pytest.approx((block**2 - 1) / 12.0 * step_s**2, rel=0.05)

@@ -158,3 +158,52 @@ def test_the_moment_of_an_event_is_found_between_those_that_are_tried() -> None:
 
     found = sharpened(state_of(STEP, 1.0, moment=2.0), score)
     assert found.hypothesis.parts["step"].shapes["moment"] == pytest.approx(7.3, abs=0.05)
+
+
+class _Many(LetGo):
+    """With seven parameters more that do nothing, so that differences cost something."""
+
+    nuisances = (*LetGo.nuisances, *(Nuisance(f"idle {k}", 1.0, "1") for k in range(7)))
+
+
+def test_what_parameters_do_about_one_hypothesis_serves_the_next() -> None:
+    """The same end, and of differences only those of what is on are simulated."""
+    system = _Many(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
+    law = follow_ring(system, np.zeros(8), state_of(DAMPING, 0.02), everything=True)
+    assert law.columns is not None
+    near = state_of(DAMPING, 0.19)
+    own = follow_ring(system, law.nuisance, near, everything=True, near=True)
+    lent = follow_ring(system, law.nuisance, near, everything=True, near=True, lent=law.columns)
+    assert lent.borrowed
+    assert not own.borrowed
+    assert lent.misfit == pytest.approx(own.misfit, abs=0.5)
+    assert lent.effort < own.effort - 7.0
+
+
+def test_what_was_lent_and_does_not_hold_is_simulated_anew() -> None:
+    system = _Many(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
+    law = follow_ring(system, np.zeros(8), state_of(DAMPING, 0.02), everything=True)
+    assert law.columns is not None
+    found = follow_ring(
+        system,
+        law.nuisance + np.eye(8)[0] * 0.3,
+        law.state,
+        everything=True,
+        near=True,
+        lent=-law.columns,
+    )
+    assert not found.borrowed
+    assert found.misfit < law.misfit + 0.5
+
+
+def test_what_stays_far_behind_is_not_led_on_with_fresh_differences() -> None:
+    system = _Many(ring(2.0 * SIGMA, 0.2, 0.0, 0.0), noise=0.07)
+    law = follow_ring(system, np.zeros(8), state_of(DAMPING, 0.02), everything=True)
+    step = state_of(STEP, 0.1, moment=9.0)
+
+    def effort(ahead: dict[float, float]) -> float:
+        found = follow_ring(system, law.nuisance, step, everything=True, near=True, ahead=ahead)
+        assert found.misfit > 20.0 * law.misfit
+        return found.effort
+
+    assert effort({1.0: law.misfit}) < effort({})
