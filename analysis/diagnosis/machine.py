@@ -9,15 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.diagnosis.candidates import candidates, library_values
+from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
-from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction, Ring
-from cdpr8.rigfile import Rig
-from model import ActiveEffect, Machine, Simulation, Task, simulate_many
+from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
+from model import ActiveEffect, Task, simulate_many
 from model.library.discovery import library
 from model.motion import RampedSine
-from model.rest import tones_hz
 from model.simulator import run as simulate_task
 
 Array = NDArray[np.float64]
@@ -33,14 +32,6 @@ LATE_S = 0.3
 
 GROUP = 16
 """As many tasks as lanes are simulated by one thread, and looked at."""
-
-GUARD = 0.08
-"""Share of critical damping that keeps the platform from ringing, where that is asked for."""
-
-MOST_BIAS = 0.1
-"""And no more of it than moves a tone's answer to the drive by this share in quadrature."""
-
-_GUARDS: dict[Ring, tuple[float, ...]] = {"left_out": (0.5, 1.0), "damped": (1.0,), "as_is": (0.0,)}
 
 
 @dataclass(frozen=True)
@@ -98,7 +89,7 @@ class RecordedMachine:
             if posed or one.side not in ("camera", "clock")
         )
         self._workers = workers
-        self._guards = [_guard(one.rig, one.excitation.frequency_hz) for one in recordings]
+        self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]
         self.simulated = 0
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
@@ -141,7 +132,7 @@ class RecordedMachine:
         """One run of all points, in shares that are simulated side by side."""
         together: dict[tuple[object, ...], dict[int, list[_Job]]] = {}
         for place, point in enumerate(points):
-            jobs = [self.job(point, record, share) for share in _GUARDS[point.ring]]
+            jobs = [self.job(point, record, share) for share in GUARDS[point.ring]]
             together.setdefault(tuple(job.key for job in jobs), {})[place] = jobs
         # Like simulations beside each other.
         alike = [together[key] for key in sorted(together, key=str)]
@@ -171,7 +162,7 @@ class RecordedMachine:
         for place, jobs in share.jobs.items():
             key = tuple((job.key, job.sight.key) for job in jobs)
             if key not in seen:
-                simulation = _without_bias([done[job.key] for job in jobs])
+                simulation = without_bias([done[job.key] for job in jobs])
                 seen[key] = seen_by(self.recordings[share.record], simulation, jobs[0].sight)
             found[place] = seen[key]
         return found
@@ -259,37 +250,6 @@ def _cut(recording: Recording, upto: float) -> RampedSine | None:
     # Whole tenths: recordings that are cut alike share their times.
     until_s = np.ceil(10.0 * (last_s - recording.shift_s + LATE_S)) / 10.0
     return replace(whole, duration_s=float(until_s)) if until_s < whole.duration_s else None
-
-
-def _without_bias(simulations: Sequence[Simulation]) -> Simulation:
-    """One simulation as it is; of two, the second with twice the damping, none of the bias."""
-    one, other = simulations[0], simulations[-1]
-    if one is other or one.tension_n.shape != other.tension_n.shape:
-        return one
-    return replace(
-        one,
-        tension_n=np.maximum(2.0 * one.tension_n - other.tension_n, 0.0),
-        pose=2.0 * one.pose - other.pose,
-        pose_rate=2.0 * one.pose_rate - other.pose_rate,
-    )
-
-
-def _guard(rig: Rig, drive_hz: float) -> Array:
-    """Damping of the cables that ends the platform's ringing in some cycles, N s/m, shape (8,).
-
-    In proportion to stiffness, so that it leaves the drive's own frequency nearly alone; less of
-    it where the drive comes near a tone, which it would damp as well.
-    """
-    machine = Machine.from_rig(rig)
-    tones = tones_hz(machine)
-    above = tones[tones > 1.5 * drive_hz]
-    lowest = float(above.min()) if above.size else float(tones.max())
-    share = GUARD
-    if drive_hz > 0.0:
-        # By so much more than a share of its damping each tone would be off in quadrature.
-        gain = 2.0 * tones * drive_hz / np.abs(tones**2 - drive_hz**2) * (tones / lowest)
-        share = min(GUARD, MOST_BIAS / float(gain.max()))
-    return np.asarray(2.0 * share / (2.0 * np.pi * lowest) * machine.stiffness)
 
 
 def _nothing(name: str) -> dict[str, Any]:
