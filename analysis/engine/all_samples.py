@@ -18,9 +18,9 @@ from analysis.engine.system import System
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
 
-CONTENDS = 30.0
+CONTENDS, NO_BETTER = 100.0, 10.0
 """What is no farther behind the best, in squared misfit, is led through with differences of its
-own."""
+own, unless what is on there without one of its causes is as good to within this."""
 
 
 def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
@@ -37,6 +37,7 @@ def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
     for _ in found:
         least = min(cost_of(one) for one in found) + CONTENDS
         asked = [k for k, one in enumerate(found) if one.borrowed and cost_of(one) < least]
+        asked = [k for k in asked if not any(_says_more(found[k], one) for one in found)]
         if not asked:
             break
         place = min(asked, key=lambda k: cost_of(found[k]))
@@ -45,6 +46,11 @@ def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
         closer = through if cost_of(through) < cost_of(one) else one
         found[place] = replace(closer, borrowed=False)
     return found
+
+
+def _says_more(one: Followed, other: Followed) -> bool:
+    """Whether a hypothesis has a cause more than another, and is hardly closer."""
+    return set(other.names) < set(one.names) and cost_of(other) < cost_of(one) + NO_BETTER
 
 
 def all_samples_say(
