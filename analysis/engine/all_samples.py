@@ -41,11 +41,16 @@ def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
         if not asked:
             break
         place = min(asked, key=lambda k: cost_of(found[k]))
-        one = found[place]
-        through = follow_ring(system, one.nuisance, one.state, everything=True, near=True)
-        closer = through if cost_of(through) < cost_of(one) else one
-        found[place] = replace(closer, borrowed=False)
+        found[place] = through(system, found[place])
     return found
+
+
+def through(system: System, one: Followed) -> Followed:
+    """A hypothesis led on with what nuisances do about itself, where that was lent."""
+    if not one.borrowed:
+        return one
+    led = follow_ring(system, one.nuisance, one.state, everything=True, near=True)
+    return replace(led if cost_of(led) < cost_of(one) else one, borrowed=False)
 
 
 def _says_more(one: Followed, other: Followed) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from analysis.engine.all_samples import all_samples_say, cost_of, led_through
+from analysis.engine.all_samples import all_samples_say, cost_of, led_through, through
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
@@ -81,6 +81,7 @@ class FollowedSearch:
         self._near = near
         self._samples = Samples(self._system, everything=True)
         self._led: list[Followed] = []
+        self._tried: set[tuple[str, ...]] = set()
         self._effort = 0.0
 
     def follow(self, hypotheses: Sequence[Fitted], others: Sequence[Fitted]) -> None:
@@ -188,13 +189,19 @@ class FollowedSearch:
         candidates = self._refiner.candidates
         if best.state is None or not best.to_end:
             return
-        arrived = {one.names for one in self._led if one.to_end}
+        if best is self._best and best.borrowed:
+            self._led = [through(self._system, one) if one is best else one for one in self._led]
+            best = self._best
+            assert best.state is not None
+        # What was led there with what it was lent is led once more, from the best's parameters.
+        done = {one.names for one in self._led if one.to_end and not one.borrowed} | self._tried
         for known in best.names:
             for name, one in candidates.items():
                 kin = one.family and one.family == candidates[known].family
                 names = tuple(sorted({*best.names, name} - {known}))
-                if not kin or name in best.names or names in arrived or self._effort > EFFORT:
+                if not kin or name in best.names or names in done or self._effort > EFFORT:
                     continue
+                self._tried.add(names)
                 found = lead_instead(self._samples, best, known, name)
                 if found is not None:
                     self._keep(found)

@@ -34,6 +34,10 @@ STRETCHES = 200
 FAINT = 1.5
 """A ring is followed as far as no more than this is left of the squared misfit of a sample."""
 
+FAR = 150.0
+"""Parameters whose squares come to more than this, in sigmas, have made up for something, though
+nothing is left."""
+
 GOES_ON = 6.0
 """With a cause on, a ring is followed on while no more than this is left: laws are not exact."""
 
@@ -87,6 +91,8 @@ def follow_ring(
                 share, lost=LOST if costs or near else np.inf, best=best
             ):
                 break
+        if came is None and share == 1.0:
+            came = Followed(nuisance, state)
         if about is None and came is not None and way.strained(share):
             about = replace(came, telling=share)
         came = way.at
@@ -104,8 +110,13 @@ def follow_ring(
         share=float(share),
         left=left,
         telling=float(next((one[1] for one in lefts if one[0] > TELLING), lefts[-1][1])),
-        about=about if share < 1.0 or left > FAINT else None,
+        about=about if share < 1.0 or left > FAINT or _far(way.at) else None,
         misfit=float(way.here @ way.here),
         effort=samples.effort,
         costs=costs,
     )
+
+
+def _far(at: Followed) -> bool:
+    """Whether parameters are so far from what is known of them that something else is there."""
+    return float(at.nuisance @ at.nuisance) > FAR

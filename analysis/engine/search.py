@@ -148,7 +148,7 @@ def _by_ring(refiner: Refiner, most_causes: int, tell: Tell | None) -> _Found:
     nothing = follow_ring(system, refiner.calibrated.at, everything=True)
     chosen = [one for one in system.candidates if not one.fixed]
     about = faint(system, nothing, chosen, following)
-    near = nothing.left < FAINT
+    near = nothing.left < FAINT and nothing.about is None
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
         if not _promising(faintly):
@@ -159,7 +159,8 @@ def _by_ring(refiner: Refiner, most_causes: int, tell: Tell | None) -> _Found:
         screened, faintly = promised, []
         single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
-    led.follow(_abreast(single) if near else single[:1], single)
+    # Where parameters alone come to the noise, what they made up for could be several things.
+    led.follow(_abreast(single) if nothing.left < FAINT else single[:1], single)
     if near or led.arrived:
         rung = led.fitted()
         return _Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
