@@ -187,12 +187,11 @@ class FollowedSearch:
     def _lead_kin(self, best: Followed) -> None:
         """From where a hypothesis was led to the end, other laws of each of its kinds are led."""
         candidates = self._refiner.candidates
-        if best.state is None or not best.to_end:
-            return
-        if best is self._best and best.borrowed:
+        if best.borrowed and best is self._best:
             self._led = [through(self._system, one) if one is best else one for one in self._led]
             best = self._best
-            assert best.state is not None
+        if best.state is None or not best.to_end:
+            return
         # What was led there with what it was lent is led once more, from the best's parameters.
         done = {one.names for one in self._led if one.to_end and not one.borrowed} | self._tried
         for known in best.names:
