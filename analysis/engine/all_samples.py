@@ -13,7 +13,7 @@ from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import System
+from analysis.engine.system import Array, System
 
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
@@ -51,6 +51,33 @@ def through(system: System, one: Followed) -> Followed:
         return one
     led = follow_ring(system, one.nuisance, one.state, everything=True, near=True)
     return replace(led if cost_of(led) < cost_of(one) else one, borrowed=False)
+
+
+def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) -> Followed:
+    """Nothing on, led once more from where hypotheses have come: one may have found a way.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    nothing
+        How far parameters alone led.
+    led
+        From where.
+
+    Returns
+    -------
+    Followed
+        The closest.
+    """
+    found = [nothing]
+    for one in led:
+        if one.to_end:
+            start = _parameters_of(system, one)
+            found.append(
+                follow_ring(system, start, everything=True, near=True, lent=nothing.columns)
+            )
+    return min(found, key=cost_of)
 
 
 def _says_more(one: Followed, other: Followed) -> bool:
@@ -102,3 +129,13 @@ def all_samples_say(
 def cost_of(led: Followed) -> float:
     """Squared misfit of all samples and of the parameters to their prior."""
     return led.misfit + float(led.nuisance @ led.nuisance)
+
+
+def _parameters_of(system: System, led: Followed) -> Array:
+    """Nuisances that stand for the parameters among what is on, and for nothing else of it."""
+    nuisance = led.nuisance.copy()
+    if led.state is not None:
+        values = led.state.term_values()
+        for i, one in enumerate(system.nuisances):
+            nuisance[i] += values.get((one.cause or "", one.term or ""), 0.0) / one.sigma
+    return nuisance

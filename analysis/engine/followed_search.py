@@ -3,7 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from analysis.engine.all_samples import all_samples_say, cost_of, led_through, through
+from analysis.engine.all_samples import (
+    all_samples_say,
+    cost_of,
+    led_through,
+    nothing_again,
+    through,
+)
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
@@ -16,7 +22,7 @@ from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import Array
 
 RESTARTS = 1
 """Nothing is led to the phase once more from where so many hypotheses have come: one may have found
@@ -125,18 +131,11 @@ class FollowedSearch:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""
         count = len(self._samples.shares)
         self._led = led_through(self._system, self._led)
-        nulls = [self._nothing]
-        for way in sorted(self._led, key=_farthest)[:RESTARTS]:
-            if way.to_end:
-                start = _parameters_of(self._system, way)
-                nulls.append(
-                    follow_ring(
-                        self._system, start, everything=True, near=True, lent=self._nothing.columns
-                    )
-                )
-        if min(one.misfit for one in (*self._led, *nulls)) > ARRIVED * count:
+        farthest = sorted(self._led, key=_farthest)[:RESTARTS]
+        nothing = nothing_again(self._system, self._nothing, farthest)
+        if min(one.misfit for one in (*self._led, nothing)) > ARRIVED * count:
             return None
-        return all_samples_say(self._refiner, self._led, min(nulls, key=cost_of), count)
+        return all_samples_say(self._refiner, self._led, nothing, count)
 
     @property
     def _best(self) -> Followed:
@@ -290,13 +289,3 @@ def _farthest(led: Followed) -> tuple[float, float]:
     """Least for what was led farthest, and there is closest."""
     share, cost = led.reached
     return -share, cost
-
-
-def _parameters_of(system: System, led: Followed) -> Array:
-    """Nuisances that stand for the parameters among what is on, and for nothing else of it."""
-    nuisance = led.nuisance.copy()
-    if led.state is not None:
-        values = led.state.term_values()
-        for i, one in enumerate(system.nuisances):
-            nuisance[i] += values.get((one.cause or "", one.term or ""), 0.0) / one.sigma
-    return nuisance
