@@ -156,13 +156,14 @@ def _told(
         rest = int(at_rest(bundle.t_s, excitation, shift_s).sum())
         spread = np.hypot(2.0 / np.sqrt(QUIET * len(piece)), np.sqrt(2.0 / max(rest, 1)))
         excess.append(_floor(t_s, value, excitation.frequency_hz) - noise)
-        power.append(np.mean(np.gradient(value, t_s, axis=0) ** 2, axis=0))
+        power.append(np.mean(_rate(t_s, value) ** 2, axis=0))
         still.append(spread * noise)
-    if not excess:
+    rate, above, spreads = (np.concatenate([np.zeros(0), *one]) for one in (power, excess, still))
+    moves = rate > 0.0
+    if not moves.any():
         return _Told(np.inf, np.inf)
-    rate = np.concatenate(power)
-    squares = np.concatenate(excess) / rate
-    known = (rate / np.concatenate(still)) ** 2
+    squares = above[moves] / rate[moves]
+    known = (rate[moves] / spreads[moves]) ** 2
     # Unsure instants raise all floors alike; rings and what sticks some more than others.
     order = np.argsort(squares)
     upto = np.cumsum(known[order]) / known.sum()
@@ -172,8 +173,16 @@ def _told(
 
 def with_instants(bundle: Bundle, instant_s: float) -> Bundle:
     """A bundle whose instants are known to a standard deviation, s."""
-    rate = np.gradient(bundle.value, bundle.t_s, axis=0)
-    return replace(bundle, jitter=instant_s * rate if instant_s else None)
+    if not instant_s:
+        return replace(bundle, jitter=None)
+    return replace(bundle, jitter=instant_s * _rate(bundle.t_s, bundle.value))
+
+
+def _rate(t_s: Array, value: Array) -> Array:
+    """Of each column, at each sample; samples that bear one time tell none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = np.gradient(value, t_s, axis=0)
+    return np.asarray(np.where(np.isfinite(rate), rate, 0.0))
 
 
 def _without_gaps(t_s: Array, places: NDArray[np.int64]) -> NDArray[np.int64]:

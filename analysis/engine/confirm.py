@@ -59,7 +59,10 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     start = search.calibrated.at
     if search.faint:
         start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
-    before = _errors(search.system, start, None, held, near=search.faint)
+    if search.faint:
+        before = _least(search.system, _tried(start, None), held)
+    else:
+        before = _errors(search.system, start, None, held, near=False)
     after = before
     if chosen.hypothesis.parts:
         again = chosen
@@ -74,13 +77,23 @@ def _errors(
     system: System, nuisance: Array, state: State | None, held: str, *, near: bool
 ) -> dict[str, dict[str, float]]:
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
-    start = Followed(nuisance, state)
-    tried = [replace(start.point, ring=ring) for ring in RINGS]
+    tried = _tried(nuisance, state)
     if rings(system):
         led = follow_ring(system, nuisance, state, held=held, near=near)
         if near and led.share < 1.0:
             led = follow_ring(system, nuisance, state, held=held)
         tried.append(led.point)
+    return _least(system, tried, held)
+
+
+def _tried(nuisance: Array, state: State | None) -> list[Point]:
+    """Without the system's own ring, and with it."""
+    start = Followed(nuisance, state)
+    return [replace(start.point, ring=ring) for ring in RINGS]
+
+
+def _least(system: System, tried: Sequence[Point], held: str) -> dict[str, dict[str, float]]:
+    """The errors of what fits the used part best."""
     found = (sample_errors(system, one, held) for one in tried)
     return min(found, key=lambda errors: sum(one**2 for one in errors["used"].values()))
 

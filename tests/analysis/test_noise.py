@@ -75,6 +75,13 @@ def test_rest_alone_tells_nothing_of_instants() -> None:
     assert instants_s(_bundles(3e-4, 28.0, generator), still, 0.0) == 0.0
 
 
+def test_a_channel_that_does_not_move_tells_nothing_of_instants() -> None:
+    bundles = _bundles(3e-4, 128.0, np.random.default_rng(9))
+    still = [replace(one, value=np.full_like(one.value, 10.0)) for one in bundles]
+    assert instants_s(still, EXCITATION, 0.0) == 0.0
+    assert instants_s([*bundles, *still], EXCITATION, 0.0) == pytest.approx(3e-4, rel=0.25)
+
+
 def test_unsure_instants_count_in_proportion_to_the_rate() -> None:
     (first, *_) = _bundles(0.0, 300.0, np.random.default_rng(5))
     jitter = with_instants(first, 2e-4).jitter
