@@ -88,6 +88,7 @@ class FollowedSearch:
         self._samples = Samples(self._system, everything=True)
         self._led: list[Followed] = []
         self._tried: set[tuple[str, ...]] = set()
+        self._begun: list[State] = []
         self._effort = 0.0
 
     def follow(self, hypotheses: Sequence[Fitted], others: Sequence[Fitted]) -> None:
@@ -142,6 +143,7 @@ class FollowedSearch:
         return min(self._led, key=_farthest, default=self._nothing)
 
     def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
+        self._begun.append(state)
         system, ahead = self._system, self._best.costs if self._led else None
         lent = self._lent() if near else None
         found = follow_ring(
@@ -171,9 +173,14 @@ class FollowedSearch:
             self._progress(len(self._led), len(self._led))
 
     def _fresh(self, hypotheses: Sequence[Fitted]) -> list[Fitted]:
-        """Those that were not led to the end before."""
+        """Those that were not led to the end before, nor lost from about the same start."""
         known = {one.names for one in self._led if one.to_end}
-        return [one for one in hypotheses if one.hypothesis.names not in known]
+        return [
+            one
+            for one in hypotheses
+            if one.hypothesis.names not in known
+            and not any(one.state.is_about(start) for start in self._begun)
+        ]
 
     def _is_kin(self, fitted: Fitted) -> bool:
         """Whether it will be led from where another law of its kind came to the end."""

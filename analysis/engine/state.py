@@ -20,6 +20,10 @@ MAGNITUDE_STEP = 0.02
 """Difference of a magnitude: of itself, and of the size it is screened at."""
 
 
+ABOUT = 8.0
+"""Numbers that differ by fewer of their steps than this begin in one place."""
+
+
 @dataclass(frozen=True)
 class Number:
     """One free number: a magnitude of terms, or a shape."""
@@ -99,6 +103,22 @@ class State:
                     shapes[number.shape.name] = _out(number.shape, float(value))
             effects[name] = Setting(values, shapes)
         return Point(nuisance, effects)
+
+    def is_about(self, other: "State") -> bool:
+        """Whether another has the same on, with numbers that differ by less than `ABOUT` steps."""
+        if self.hypothesis.key != other.hypothesis.key or self._whole() != other._whole():
+            return False
+        steps = np.array([one.step for one in self.numbers])
+        return bool(np.all(np.abs(self.values - other.values) <= ABOUT * steps))
+
+    def _whole(self) -> list[float | None]:
+        """Shapes that no fit moves."""
+        return [
+            part.shapes.get(shape.name)
+            for name, part in sorted(self.hypothesis.parts.items())
+            for shape in self.candidates[name].shapes
+            if shape.whole
+        ]
 
     def bumped(self, free: int, share: float = 1.0) -> "State":
         """With one free number moved by a share of its step, inwards where it is at its edge."""

@@ -207,3 +207,10 @@ def test_what_stays_far_behind_is_not_led_on_with_fresh_differences() -> None:
         return found.effort
 
     assert effort({1.0: law.misfit}) < effort({})
+
+
+def test_starts_are_told_from_each_other() -> None:
+    assert state_of(DAMPING, 0.2).is_about(state_of(DAMPING, 0.21))
+    assert not state_of(DAMPING, 0.2).is_about(state_of(DAMPING, 0.4))
+    assert not state_of(DAMPING, 0.2).is_about(state_of(STEP, 0.2, moment=9.0))
+    assert not state_of(STEP, 0.2, moment=9.0).is_about(state_of(STEP, 0.2, moment=9.5))
