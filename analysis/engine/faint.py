@@ -86,6 +86,7 @@ def faint(
     (here,) = samples.residuals([followed.point])
     points, steps = followed.neighbours()
     numbers, count = len(steps), len(followed.nuisance)
+    # What nuisances do is known already, where they were led to just there.
     known = np.zeros((0, len(here)))
     if followed.columns is not None and followed.fresh and followed.telling == 1.0:
         known = followed.columns

@@ -32,7 +32,8 @@ class Followed:
         Of the time: what is left out is looked for up to there.
     about
         Where parameters had not yet begun to make up for what is left out; its `telling` is where
-        they have: there is told best what that is. None: they never did, or nothing is left.
+        they have: there is told best what that is. None: they never did, or nothing is left and
+        they are near what is known of them.
     misfit
         Squared misfit of all samples.
     effort
