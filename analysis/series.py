@@ -102,6 +102,12 @@ def measured_cables(run: Run) -> tuple[int, ...]:
     return tuple(c for c in range(1, CABLES + 1) if len(run.cable_tension(c)) >= MIN_SAMPLES)
 
 
+def about_bend(value: Array) -> float:
+    """Standard deviation of samples about their neighbours' mean, outliers aside."""
+    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
+    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5))
+
+
 def _series(
     run: Run, name: str, unit: str, times: "pd.Series[float]", values: "pd.Series[float]", of: str
 ) -> Series:
@@ -122,7 +128,4 @@ def _series(
     # Without rest the middle of the motion stands in for it, and what one sample differs from
     # its neighbours' straight line bounds the noise from above.
     middle = (value.max() + value.min()) / 2.0
-    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
-    return Series(
-        name, unit, t_s, value - middle, float(np.median(np.abs(bend)) / 0.6745 / 1.2247), False
-    )
+    return Series(name, unit, t_s, value - middle, about_bend(value), False)

@@ -61,12 +61,6 @@ def at_rest(t_s: Array, excitation: Excitation, shift_s: float) -> NDArray[np.bo
     return np.asarray(t_s < excitation.start_s + shift_s - SETTLES_S)
 
 
-def about_bend(value: Array) -> float:
-    """Standard deviation of samples about their neighbours' mean, outliers aside."""
-    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
-    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5))
-
-
 def about_line(t_s: Array, value: Array) -> float:
     """Standard deviation of samples about a straight line, those far off aside."""
     line = np.polynomial.Polynomial.fit(t_s, value, 1)(t_s)
@@ -144,7 +138,7 @@ def _told(
     shift_s: float,
     within_s: tuple[float, float],
 ) -> _Told:
-    """What a stretch of time tells; nothing is as good as infinitely unsure."""
+    """What a stretch of time tells; where it tells nothing, both are infinite."""
     excess, power, still = [], [], []
     for bundle in bundles:
         chosen = (bundle.t_s >= within_s[0]) & (bundle.t_s < within_s[1])

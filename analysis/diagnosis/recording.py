@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from analysis.diagnosis.noise import (
     LEAST_REST,
-    about_bend,
     about_line,
     at_rest,
     instants_s,
@@ -18,7 +17,7 @@ from analysis.diagnosis.noise import (
 )
 from analysis.engine.system import Bundle, Segment
 from analysis.engine.tones import RESONANT, resonant
-from analysis.series import measured_cables
+from analysis.series import about_bend, measured_cables
 from cdpr8.errors import DataError
 from cdpr8.rigfile import Rig
 from cdpr8.rigfile.schema import Excitation

@@ -59,11 +59,11 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     start = search.calibrated.at
     if search.faint:
         start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
-    if search.faint:
-        before = _least(search.system, _tried(start, None), held)
+    if search.faint and chosen.hypothesis.parts:
+        before = after = _least(search.system, _tried(start, None), held)
     else:
-        before = _errors(search.system, start, None, held, near=False)
-    after = before
+        # Where nothing is on, this is what is judged: the held-out part must not have been seen.
+        before = after = _errors(search.system, start, None, held, near=search.faint)
     if chosen.hypothesis.parts:
         again = chosen
         if not search.faint:
