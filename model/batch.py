@@ -12,6 +12,7 @@ from cdpr8 import CABLES
 from model.compiled import Announce, compiled, lane_integrator
 from model.extras import cable_numbers, pack, state_count, switches
 from model.kernel import STATES, Extras
+from model.library.discovery import kernel_effects
 from model.library.lanes import LANES, PLATFORM, WORK
 from model.library.selection import ActiveEffect
 from model.method import Method, find_method
@@ -128,8 +129,8 @@ def _run(
     rows = steps.output_s.size
     inside, inside_weights = rows_inside(method, steps)
     numbers = _numbers(lanes)
-    state = _side_by_side([_longer(task.initial(steps), lanes.states) for task in lanes.tasks])
-    jump = _side_by_side([_longer(task.jump(steps), lanes.states) for task in lanes.tasks])
+    state = _side_by_side([_spread(task, task.initial(steps), lanes) for task in lanes.tasks])
+    jump = _side_by_side([_spread(task, task.jump(steps), lanes) for task in lanes.tasks])
     limit = _side_by_side([blow_up_limits(task.machine, lanes.states) for task in lanes.tasks])
     trajectory = np.empty((LANES, rows, lanes.states))
     blown_point = np.full(LANES, -1, dtype=np.int64)
@@ -186,9 +187,17 @@ def _run(
         yield place, as_simulation(lanes.tasks[lane], steps, path, own, method.name)
 
 
-def _longer(state: Array, states: int) -> Array:
-    """A state with room for the states of other lanes' effects, all of which start at zero."""
-    return np.append(state[:STATES], np.zeros(states - STATES))
+def _spread(task: Task, state: Array, lanes: _Lanes) -> Array:
+    """A task's state where the lanes have it; the states of other lanes' effects start at zero."""
+    found = np.append(state[:STATES], np.zeros(lanes.states - STATES))
+    if task.extras is not None and lanes.extras is not None:
+        for effect, own, there in zip(
+            kernel_effects(), task.extras.offset, lanes.extras.offset, strict=True
+        ):
+            if own:
+                count = CABLES * len(effect.states)
+                found[there : there + count] = state[own : own + count]
+    return found
 
 
 def _side_by_side(columns: Sequence[Array]) -> Array:

@@ -27,7 +27,7 @@ functions allocate nothing, and return no part of an array: Python gives them th
 INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
 """Small next to their many arguments: a call would cost more than the work."""
 
-SCALAR = ("integrate", "observe", "drive_wrench")
+SCALAR = ("integrate", "observe", "derivatives", "drive_wrench")
 """Functions of `model.kernel` that Python calls; all others are compiled into them."""
 
 LANE = ("integrate_lanes", "observe_lanes")

@@ -1,6 +1,6 @@
 """The effects that are on, packed as the kernel reads them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cdpr8 import CABLES
 from model.kernel import STATES, Extras
 from model.library.discovery import first_parameters, kernel_effects, parameter_rows
-from model.library.effect import Acts
+from model.library.effect import Acts, Effect, State
 from model.library.lanes import CABLE
 from model.library.selection import ActiveEffect
 from model.machine import Machine
@@ -38,6 +38,34 @@ def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
             offset[place] = states
             states += CABLES * len(effect.states)
     return Extras(on, offset, posts(machine)[0], cable_numbers(machine, effects))
+
+
+def following(extras: Extras | None) -> NDArray[np.int64]:
+    """Places of the states that follow the elongation of each cable, shape (any, 8)."""
+    places = [first for first, _, state in _states(extras) if state.follows]
+    return np.array(places, dtype=np.int64)[:, None] + np.arange(CABLES)
+
+
+def held(extras: Extras | None) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Places of the states that another's rate holds at rest, and of those others."""
+    places: list[int] = []
+    by: list[int] = []
+    for first, effect, state in _states(extras):
+        if state.held_by and extras is not None:
+            names = [one.name for one in effect.states]
+            apart = CABLES * (names.index(state.held_by) - names.index(state.name))
+            own = extras.carrier if state.shared else np.arange(CABLES)
+            places += [first + int(one) for one in np.unique(own)]
+            by += [first + int(one) + apart for one in np.unique(own)]
+    return np.array(places, dtype=np.int64), np.array(by, dtype=np.int64)
+
+
+def _states(extras: Extras | None) -> Iterator[tuple[int, Effect, State]]:
+    """Each state of the effects that are on, and where that of the first cable is."""
+    for place, effect in enumerate(kernel_effects()):
+        if extras is not None and extras.offset[place]:
+            for which, state in enumerate(effect.states):
+                yield int(extras.offset[place]) + which * CABLES, effect, state
 
 
 def switches(effects: Sequence[ActiveEffect]) -> NDArray[np.int64]:

@@ -397,6 +397,24 @@ def integrate(
     return steps + 1, -1
 
 
+def derivatives(states: Array, drive: Array, plant: Any, extras: Any, rates_out: Array) -> None:
+    """Rates of some states, each by itself.
+
+    Parameters
+    ----------
+    states
+        Shape (n, s).
+    drive
+        One row for all, shape (6,) or (22,).
+    plant, extras
+        A `Plant` and an `Extras`.
+    rates_out
+        Filled, shape (n, s).
+    """
+    for row in range(states.shape[0]):
+        derivative(states[row], drive, plant, extras, rates_out[row])
+
+
 def observe(states: Array, drive: Array, plant: Any, extras: Any, cables_out: Array) -> None:
     """The cables of a trajectory.
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled
+from model.extras import following, held
 from model.kernel import Extras
 from model.kinematics import cross, rotation, trigonometry
 from model.machine import Machine
@@ -18,22 +19,26 @@ MOST_ROUNDS = 12
 CLOSE_M = 1e-10
 """Rounds end when the platform moves by less than this."""
 
-STEP = 1e-6
-"""Of the differences, m and rad."""
+STEP, STEP_N = 1e-6, 1e-3
+"""Of the differences, m and rad, and N."""
+
+POSE = np.arange(6)
+"""Where it is in the state vector; its rates follow."""
 
 FARTHEST_M = 0.3
 """A platform that would hang farther off than this has no rest worth the name."""
 
 
-def rest_pose(machine: Machine, extras: Extras | None, wrench: Array, states: int) -> Array:
-    """The pose at which cables, weight and a constant wrench balance.
+def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: int) -> Array:
+    """The state in which cables, weight and a constant wrench balance.
 
     Parameters
     ----------
     machine
         The plant.
     extras
-        Effects in the kernel; what they add to tensions at rest counts, their memory is empty.
+        Effects in the kernel; what they add to tensions at rest counts. What follows the elongation
+        has come to it; other memory is empty.
     wrench
         Of the drive at rest, N and N m, shape (6,).
     states
@@ -42,25 +47,32 @@ def rest_pose(machine: Machine, extras: Extras | None, wrench: Array, states: in
     Returns
     -------
     Array
-        Shape (6,), m and rad; zeros where there is none near X* = 0.
+        Shape (states,), the pose in m and rad first; zeros where there is none near X* = 0.
     """
-    observe, plant = compiled("observe"), machine.plant()
-    cables = np.empty((5, 7, machine.cables))
-    no_drive = np.zeros((1, 6))
-    shown = np.zeros((7, states))
-    pose = np.zeros(6)
+    derivatives, plant = compiled("derivatives"), machine.plant()
+    drive = np.append(wrench, np.zeros(machine.cables * 2))
+    follow = following(extras)
+    places, held_by = held(extras)
+    places, held_by = np.append(POSE, places), np.append(POSE + len(POSE), held_by)
+    steps = np.where(places < len(POSE), STEP, STEP_N)
+    found = np.zeros(states)
+    rates = np.empty((len(places) + 1, states))
     for _ in range(MOST_ROUNDS):
-        shown[:, :6] = pose + np.vstack([np.zeros(6), STEP * np.eye(6)])
-        observe(shown, no_drive, plant, extras, cables)
-        left = _pull(machine, shown[:, :6], cables[3]) + wrench
-        left[:, 2] -= machine.mass * machine.gravity
-        move = -np.linalg.solve(((left[1:] - left[0]) / STEP).T, left[0])
-        pose = pose + move
-        if not np.abs(pose).max() < FARTHEST_M:
+        tried = np.tile(found, (len(places) + 1, 1))
+        tried[np.arange(1, len(places) + 1), places] += steps
+        tried[:, follow] = _elongation(machine, tried[:, :6])[:, None, :]
+        derivatives(tried, drive, plant, extras, rates)
+        left = rates[:, held_by]
+        move, *_ = np.linalg.lstsq(((left[1:] - left[0]) / steps[:, None]).T, -left[0])
+        found[places] += move
+        if not np.abs(found[POSE]).max() < FARTHEST_M:
             break
-        if np.abs(move).max() < CLOSE_M:
-            return pose if np.abs(pose).max() > 10.0 * CLOSE_M else np.zeros(6)
-    return np.zeros(6)
+        if np.abs(move[POSE]).max() < CLOSE_M:
+            if not np.abs(found[POSE]).max() > 10.0 * CLOSE_M:
+                break
+            found[follow] = _elongation(machine, found[None, :6])
+            return found
+    return np.zeros(states)
 
 
 def tones_hz(machine: Machine) -> Array:
@@ -74,8 +86,8 @@ def tones_hz(machine: Machine) -> Array:
         The plant.
     """
     poses = STEP * np.vstack([np.eye(6), -np.eye(6)])
-    stretched = _lines(machine, poses)[2] - machine.rest_length
-    pull = _pull(machine, poses, machine.pretension + machine.stiffness * stretched)
+    stretched = machine.stiffness * _elongation(machine, poses)
+    pull = _pull(machine, poses, machine.pretension + stretched)
     stiffness = -(pull[:6] - pull[6:]).T / (2.0 * STEP)
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = machine.mass * np.eye(3)
@@ -90,6 +102,11 @@ def _lines(machine: Machine, poses: Array) -> tuple[Array, Array, Array]:
     arms = machine.anchor @ turns.transpose(0, 2, 1)
     along = machine.base - poses[:, None, :3] - arms
     return arms, along, np.sqrt((along**2).sum(axis=-1))
+
+
+def _elongation(machine: Machine, poses: Array) -> Array:
+    """Of the cables beyond X* = 0, shape (n, 8), m."""
+    return _lines(machine, poses)[2] - machine.rest_length
 
 
 def _pull(machine: Machine, poses: Array, tension: Array) -> Array:

@@ -19,7 +19,7 @@ from model.library.selection import ActiveEffect, of_rig, those_that_act
 from model.machine import Machine
 from model.method import Method, find_method
 from model.motion import Motion, RampedSine
-from model.rest import rest_pose
+from model.rest import rest_state
 from model.steps import Steps, divide
 
 Array = NDArray[np.float64]
@@ -205,17 +205,17 @@ class Task:
             return np.zeros(self.states)
         state = self._state_at(0.0, -1.0)
         if self.drive_kind == "wrench" and not state[:12].any():
-            state[:6] = self._rest_pose
+            return self._at_rest.copy()
         return state
 
     @cached_property
-    def _rest_pose(self) -> Array:
-        """Where the plant hangs, with the drive as it is at rest."""
+    def _at_rest(self) -> Array:
+        """How the plant hangs, with the drive as it is at rest."""
         if self.machine is self.nominal_machine or not self._differs:
-            return np.zeros(6)
+            return np.zeros(self.states)
         at_s, before = np.zeros((1, 1)), np.full((1, 1), -1.0)
         wrench = drive_table(self.nominal_machine, self.driven, at_s, before, "wrench")[0, 0, :6]
-        return rest_pose(self.machine, self.extras, wrench, self.states)
+        return rest_state(self.machine, self.extras, wrench, self.states)
 
     @property
     def _differs(self) -> bool:

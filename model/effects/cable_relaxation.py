@@ -26,7 +26,7 @@ EFFECT = Effect(
         Parameter("branch_share", "1", 0.1, 0.0, 0.5, "k_1 / k", magnitude=True),
         Parameter("relaxation_s", "s", 0.05, 5e-3, 100.0, "tau"),
     ),
-    states=(State("dashpot", "m", "q, elongation of the dashpot"),),
+    states=(State("dashpot", "m", "q, elongation of the dashpot", follows=True),),
     pull=pull,
     rates=rates,
 )

@@ -55,7 +55,9 @@ EFFECT = Effect(
     signature="quadrature constant over frequency (within 8 % from 0.5 to 40 Hz) and in "
     "proportion to amplitude; like Kelvin-Voigt at one frequency",
     parameters=(Parameter("loss_factor", "1", 0.03, 0.0, 0.2, "eta", magnitude=True),),
-    states=tuple(State(f"q{j}", "m", f"elongation of dashpot {j}") for j in range(1, 6)),
+    states=tuple(
+        State(f"q{j}", "m", f"elongation of dashpot {j}", follows=True) for j in range(1, 6)
+    ),
     pull=pull,
     rates=rates,
 )

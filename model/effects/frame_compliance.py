@@ -73,7 +73,10 @@ EFFECT = Effect(
         Parameter("frame_loss", "1", 0.03, 5e-3, 0.5, "zeta"),
     ),
     states=(
-        *(State(f"give_{axis}", "N", f"f along {axis.upper()}", shared=True) for axis in "xyz"),
+        *(
+            State(f"give_{axis}", "N", f"f along {axis.upper()}", True, held_by=f"give_{axis}_rate")
+            for axis in "xyz"
+        ),
         *(State(f"give_{axis}_rate", "N/s", "its rate", shared=True) for axis in "xyz"),
     ),
     pull=pull,

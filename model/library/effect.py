@@ -73,12 +73,18 @@ class State:
         In a few words.
     shared
         Whether the cables of one post share it; each adds its part to its rate.
+    follows
+        Whether it follows the elongation of its cable: at rest it has come to it.
+    held_by
+        The state whose rate is zero where this one is at rest; "": it stays where it begins.
     """
 
     name: str
     unit: str
     meaning: str
     shared: bool = False
+    follows: bool = False
+    held_by: str = ""
 
 
 @dataclass(frozen=True)

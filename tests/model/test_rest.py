@@ -1,0 +1,48 @@
+"""A machine that differs from its drive's hangs still before the motion, whatever its cables do."""
+
+import numpy as np
+import pytest
+
+from cdpr8.rigfile import Excitation, Rig
+from model import ActiveEffect, Simulation, Task, simulate_many
+from model.kernel import STATES
+from model.library.discovery import kernel_effects
+from model.simulator import run
+
+QUIET = Excitation(rest_s=0.6, motion_s=0.3, ramp_s=0.1, cable_offset_m=0.0)
+TIGHTER = ActiveEffect("pretension", {"pretension_offset_n": (0.0, 1.0, *[0.0] * 6)})
+GROWING = ("cable_creep",)
+"""What goes on for as long as a load lasts."""
+
+STILL_N = 2e-6
+
+
+def moved_n(simulation: Simulation) -> float:
+    before = simulation.tension_n[simulation.t_s < QUIET.rest_s - 0.01]
+    return float(np.abs(before - before[0]).max())
+
+
+def with_effect(rig: Rig, name: str) -> Task:
+    return Task(rig, QUIET, effects=[TIGHTER, ActiveEffect(name)], nominal=rig)
+
+
+@pytest.mark.parametrize(
+    "name", [one.name for one in kernel_effects() if one.name not in ("pretension", *GROWING)]
+)
+def test_it_hangs_still_with_each_effect(rig: Rig, name: str) -> None:
+    alone = run(with_effect(rig, name))
+    assert abs(alone.rest_tension_n[1] - rig.cable[1].pretension_n.value) > 0.02
+    assert moved_n(alone) < STILL_N
+
+
+def test_lanes_of_several_effects_hang_still_each(rig: Rig) -> None:
+    names = ("cable_structural", "frame_compliance", "umbilical", "cable_relaxation")
+    for one in simulate_many([with_effect(rig, name) for name in names], fewest=1):
+        assert moved_n(one) < STILL_N
+
+
+def test_a_dashpot_that_had_not_come_to_rest_would_be_seen(rig: Rig) -> None:
+    task = with_effect(rig, "cable_structural")
+    before = task._at_rest
+    before[STATES:] = 0.0
+    assert moved_n(run(task)) > 1e3 * STILL_N
