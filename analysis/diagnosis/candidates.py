@@ -80,8 +80,8 @@ FRICTION = "friction at the pulleys"
 FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_presliding")
 """Laws of one thing: two of them at once are rather one law that is none of these."""
 
-DRAG = "drag on the platform"
-DRAGS = ("platform_damping", "air_drag")
+DRAG = "what holds back the platform"
+DRAGS = ("platform_damping", "air_drag", "umbilical")
 
 LOSS = "loss in the cables"
 LOSSES = ("cable_viscous", "cable_structural", "cable_relaxation")

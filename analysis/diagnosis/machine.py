@@ -123,21 +123,29 @@ class RecordedMachine:
         found: list[dict[int, Prediction]] = [{} for _ in self.recordings]
         for share, seen in zip(shares, self._all(shares), strict=True):
             found[share.record].update(seen)
+        nothing = [[np.zeros_like(bundle.value) for bundle in one.bundles]
+                   for one in self.recordings]  # fmt: skip
         return [
-            reduce([bundle for of_record in found for bundle in of_record[place]])
+            reduce([bundle for of_record, none in zip(found, nothing, strict=True)
+                    for bundle in of_record.get(place, none)])
             for place in range(len(points))
-        ]
+        ]  # fmt: skip
 
     def _shares(self, points: Sequence[Point], record: int) -> list[_Share]:
         """One run of all points, in shares that are simulated side by side."""
         together: dict[tuple[object, ...], dict[int, list[_Job]]] = {}
+        name = self.recordings[record].run.name
         for place, point in enumerate(points):
+            if point.records and name not in point.records:
+                continue
             jobs = [self.job(point, record, share) for share in GUARDS[point.ring]]
             together.setdefault(tuple(job.key for job in jobs), {})[place] = jobs
         # Like simulations beside each other.
         alike = [together[key] for key in sorted(together, key=str)]
         count = len({job.key for places in alike for jobs in places.values() for job in jobs})
         self.simulated += count
+        if not count:
+            return []
         size = 1 if count / self._workers < LANES_FROM else min(GROUP, -(-count // self._workers))
         each = max(size * len(alike) // count, 1)
         return [

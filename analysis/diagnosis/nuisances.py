@@ -120,13 +120,17 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
         sigma = START_S if known else UNKNOWN_START_S
         if one.excitation.amplitude_deg > 0.0:
             found.append(
-                (Nuisance(f"start of {one.run.name}", sigma, "s"), Meaning("start", record=r))
+                (
+                    Nuisance(f"start of {one.run.name}", sigma, "s", record=one.run.name),
+                    Meaning("start", record=r),
+                )
             )
         for i, cable in enumerate(one.rig.cable, start=1):
             row = cable.pretension_n
             if row.sigma > 0.0:
                 found.append(
-                    (Nuisance(f"pretension of {one.run.name}@{i}", row.sigma, "N"),
+                    (Nuisance(f"pretension of {one.run.name}@{i}", row.sigma, "N",
+                              record=one.run.name),
                      Meaning("pretension", "pretension_offset_n", i, r))
                 )  # fmt: skip
     columns = list(zip(*found, strict=True))

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.by_ring import rings
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.search import Search, rings
+from analysis.engine.search import Search
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Ring, System
 from analysis.engine.whiten import Whiten

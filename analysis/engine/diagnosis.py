@@ -11,7 +11,8 @@ from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import NOISE, Judgement, judge
 from analysis.engine.locate import Finding, locate
-from analysis.engine.search import Search, look, search
+from analysis.engine.look import look
+from analysis.engine.search import Search, search
 from analysis.engine.system import Array, System
 from analysis.engine.whiten import noise_leaves
 

@@ -76,6 +76,11 @@ class Followed:
         return share, self.costs.get(share, np.inf)
 
     @property
+    def strain(self) -> float:
+        """What parameters cost: how far they are from what is known of them, squared, in sigmas."""
+        return float(self.nuisance @ self.nuisance)
+
+    @property
     def to_end(self) -> bool:
         """Whether it was led over all of the time, whatever was left."""
         return self.reached[0] == 1.0

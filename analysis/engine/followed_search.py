@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from analysis.engine.all_samples import (
     all_samples_say,
     cost_of,
@@ -15,6 +17,7 @@ from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.kin import lead_from, lead_instead
+from analysis.engine.part import records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -23,6 +26,7 @@ from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
 from analysis.engine.system import Array
+from analysis.engine.way import HOPELESS
 
 RESTARTS = 1
 """Nothing is led to the phase once more from where so many hypotheses have come: one may have found
@@ -31,8 +35,8 @@ a way that nothing missed."""
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
 
-EFFORT = 3000.0
-"""Whole simulations, after which nothing new is tried."""
+EFFORT, RECORDS = 3000.0, 4
+"""Whole simulations, after which nothing new is tried; fewer, of more recordings than that."""
 
 ARRIVED = 2.5
 """What was led to the end speaks for every sample, where no more than this is left of the squared
@@ -45,6 +49,13 @@ share of the time, the ring tells nothing of what is left out."""
 EXPLAINS = 0.05
 """Beside a law that was led to the end, one cause more is tried where it promises to explain this
 share of what that leaves."""
+
+SHARES = (0.5, 0.2, 0.05)
+"""Of what straight lines promise of it, one cause more begins with all, or with so much."""
+
+WORTH_IT = 30.0
+"""Where it then does no better than this, in squared misfit, what it is, or may be without, is not
+asked."""
 
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
@@ -90,6 +101,7 @@ class FollowedSearch:
         self._tried: set[tuple[str, ...]] = set()
         self._begun: list[State] = []
         self._effort = 0.0
+        self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
     def follow(self, hypotheses: Sequence[Fitted], others: Sequence[Fitted]) -> None:
         """Lead hypotheses to the ring's phase.
@@ -102,7 +114,7 @@ class FollowedSearch:
             Single causes, the best first: laws of the same things as what comes far are tried too.
         """
         for number, one in enumerate(self._fresh(hypotheses)):
-            if number > 0 and (self._effort > EFFORT or self._is_kin(one)):
+            if number > 0 and (self._effort > self._most or self._is_kin(one)):
                 continue
             self._lead(one.point.nuisance, one.state, near=self._near)
         if not self._led:
@@ -114,7 +126,7 @@ class FollowedSearch:
         for one in self._fresh(self._kin(others)):
             if self._best.to_end and not self._near:
                 break
-            if (not self._near or one.log_score > least) and self._effort < EFFORT:
+            if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead(one.point.nuisance, one.state, near=self._near)
         self._lead_kin(self._best)
         for _ in range(self._most_causes - 1):
@@ -149,7 +161,8 @@ class FollowedSearch:
         found = follow_ring(
             system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent
         )
-        if near and found.share < 1.0:
+        lost = self._best.to_end and found.misfit > HOPELESS * self._best.misfit
+        if near and found.share < 1.0 and not lost:
             self._effort += found.effort
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
@@ -199,12 +212,17 @@ class FollowedSearch:
         if best.state is None or not best.to_end:
             return
         # What was led there with what it was lent is led once more, from the best's parameters.
-        done = {one.names for one in self._led if one.to_end and not one.borrowed} | self._tried
+        done = {
+            one.names
+            for one in self._led
+            if one.to_end and not one.borrowed and one.misfit < HOPELESS * best.misfit
+        }
+        done |= self._tried
         for known in best.names:
             for name, one in candidates.items():
                 kin = one.family and one.family == candidates[known].family
                 names = tuple(sorted({*best.names, name} - {known}))
-                if not kin or name in best.names or names in done or self._effort > EFFORT:
+                if not kin or name in best.names or names in done or self._effort > self._most:
                     continue
                 self._tried.add(names)
                 found = lead_instead(self._samples, best, known, name)
@@ -230,7 +248,7 @@ class FollowedSearch:
     def _one_more(self) -> bool:
         """Try one cause more beside the best; whether that leads farther."""
         best, refiner = self._best, self._refiner
-        if len(best.names) >= self._most_causes or self._effort > EFFORT:
+        if len(best.names) >= self._most_causes or self._effort > self._most:
             return False
         found = faint(self._system, best, others_beside(refiner, best))
         family = {name: one.family or name for name, one in refiner.candidates.items()}
@@ -240,8 +258,11 @@ class FollowedSearch:
             promised.setdefault(family[added], []).append(scored)
 
         def lead(scored: Scored) -> Followed:
-            state = State.of(scored, refiner.candidates)
-            self._lead(nuisances_of(found, scored), state, near=best.to_end)
+            start = Followed(nuisances_of(found, scored), State.of(scored, refiner.candidates))
+            if best.to_end:
+                start = self._nearest(best, start)
+            assert start.state is not None
+            self._lead(start.nuisance, start.state, near=best.to_end)
             return self._led[-1]
 
         known = {one.names for one in self._led}
@@ -250,14 +271,25 @@ class FollowedSearch:
             promising = laws[0].log_score > next(iter(promised.values()))[0].log_score - FAR_BEHIND
             if promising and laws[0].hypothesis.names not in known:
                 tried[kind] = lead(laws[0])
-        if self._best is best:
+        if self._best is best or (best.to_end and cost_of(self._best) > cost_of(best) - WORTH_IT):
             return False
         # One law was led that far; which of its kind it is, is another question.
         kind = min(tried, key=lambda one: _farthest(tried[one]))
         for scored in promised[kind][1:]:
-            if scored.hypothesis.names not in known and self._effort < EFFORT:
+            if scored.hypothesis.names not in known and self._effort < self._most:
                 self._lead_like(tried[kind], scored, best.names)
         return True
+
+    def _nearest(self, best: Followed, far: Followed) -> Followed:
+        """So much of what straight lines promise beside the best as leaves least."""
+        assert far.state is not None
+        tried = [far]
+        for share in SHARES:
+            nuisance = best.nuisance + share * (far.nuisance - best.nuisance)
+            tried.append(Followed(nuisance, far.state.nearer(best.state, share)))
+        left = self._samples.residuals([one.point for one in tried])
+        costs = [found @ found + one.strain for found, one in zip(left, tried, strict=True)]
+        return tried[int(np.argmin(costs))]
 
     def _one_less(self, whole: Followed) -> None:
         """Try without one cause, from where one more led to: each may only have shown the way."""
@@ -267,7 +299,7 @@ class FollowedSearch:
         known = {one.names for one in self._led if one.to_end and cost_of(one) < close}
         for name in whole.names:
             state = whole.state.without(name)
-            if state.hypothesis.names in known or self._effort > EFFORT:
+            if state.hypothesis.names in known or self._effort > self._most:
                 continue
             fewer = lead_from(self._system, whole, state)
             self._keep(fewer)

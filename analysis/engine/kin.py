@@ -27,6 +27,9 @@ FIRST_PART = 0.2
 EFFORT = 400.0
 """Whole simulations for one of kin: some three times all differences."""
 
+FAR_EFFORT = 1200.0
+"""And where parameters had made up for something: they are more than a sigma off, on average."""
+
 
 def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Followed | None:
     """Lead a hypothesis with another law in the place of one, from where that one has come to.
@@ -57,7 +60,8 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
 def lead_from(system: System, law: Followed, state: State) -> Followed:
     """Lead a hypothesis that is near another from where that one has come to the end.
 
-    What nuisances do there is taken to be what they do here.
+    What nuisances do there is taken to be what they do here, unless they made up for something
+    there: then it may be far to where they need not.
 
     Parameters
     ----------
@@ -68,9 +72,10 @@ def lead_from(system: System, law: Followed, state: State) -> Followed:
     state
         The free numbers to begin with.
     """
+    made_up = law.strain > len(law.nuisance)
     return follow_ring(
-        system, law.nuisance, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
-        lent=law.columns,
+        system, law.nuisance, state, everything=True, near=True, ahead=law.costs,
+        most=FAR_EFFORT if made_up else EFFORT, lent=None if made_up else law.columns,
     )  # fmt: skip
 
 

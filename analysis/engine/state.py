@@ -160,6 +160,19 @@ class State:
                 values[i] *= share
         return replace(self, values=values)
 
+    def nearer(self, other: "State | None", share: float) -> "State":
+        """So much of the way from another hypothesis, which has fewer causes, to this one."""
+        known = {}
+        if other is not None:
+            known = dict(zip(map(_label, other.numbers), other.values, strict=True))
+        values = self.values.copy()
+        for i in self.free:
+            number = self.numbers[i]
+            # What only this one has is nothing there; its shapes are as they are.
+            there = known.get(_label(number), 0.0 if number.shape is None else values[i])
+            values[i] = there + share * (values[i] - there)
+        return replace(self, values=values)
+
     def without(self, name: str) -> "State":
         """With one candidate off."""
         keep = [i for i, one in enumerate(self.numbers) if one.candidate != name]
@@ -217,6 +230,11 @@ class State:
                 what = number.shape.name if number.shape else number.terms[0]
                 found.append((number.candidate, what))
         return tuple(found)
+
+
+def _label(number: Number) -> tuple[object, ...]:
+    """Equal for numbers that are the same thing in two hypotheses."""
+    return number.candidate, number.terms, None if number.shape is None else number.shape.name
 
 
 def _in(shape: Shape, value: float) -> float:

@@ -106,6 +106,8 @@ class Nuisance:
         it; None: it has none.
     step
         Half the width of the difference that tells what it does, in sigmas.
+    record
+        The only recording that it moves; "": it may move all.
     """
 
     name: str
@@ -114,6 +116,7 @@ class Nuisance:
     cause: str | None = None
     term: str | None = None
     step: float = 0.5
+    record: str = ""
 
 
 @dataclass(frozen=True)
@@ -274,12 +277,16 @@ class Point:
     upto
         Share of each recording's time that is asked for, from its first sample on: a simulator may
         leave out the rest, and predict anything there.
+    records
+        Names of the recordings that are asked for; (): all of them. A simulator may leave out
+        others, and predict anything in them.
     """
 
     nuisance: Array
     effects: Mapping[str, Setting] = field(default_factory=dict)
     ring: Ring = "left_out"
     upto: float = 1.0
+    records: tuple[str, ...] = ()
 
 
 Prediction = list[Array]

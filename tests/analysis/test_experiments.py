@@ -22,9 +22,10 @@ from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.fitted import Fitted
 from analysis.engine.judge import Judgement
 from analysis.engine.lens import Lens
+from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Screen
-from analysis.engine.search import Search, look
+from analysis.engine.search import Search
 from analysis.engine.sensitivity import term_columns
 from cdpr8.rigfile import Excitation, load_rig
 from cdpr8.rigfile.checks import structure_matrix_at_rest

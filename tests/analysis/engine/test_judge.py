@@ -13,8 +13,8 @@ from analysis.engine.judge import (
     STANDS_OUT,
     judge,
 )
+from analysis.engine.look import look
 from analysis.engine.refine import Refiner
-from analysis.engine.search import look
 from analysis.engine.state import State
 from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
 

@@ -10,9 +10,9 @@ from analysis.engine.faint import faint
 from analysis.engine.faint_search import one_more
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.lens import Lens
+from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
-from analysis.engine.search import look
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import Number, State
 from analysis.engine.system import (

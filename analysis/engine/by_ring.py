@@ -1,0 +1,150 @@
+"""What the ring tells: hypotheses by every sample, where they can be led to the noise."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from analysis.engine.faint import faint
+from analysis.engine.faint_search import faint_search, fitted_there, one_more
+from analysis.engine.finder import Tell
+from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
+from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.screen import Scored
+from analysis.engine.system import Array, System
+
+WORTH_FOLLOWING = 8.0
+"""What is faint, and in straight lines this far before nothing, is led to the phase as well."""
+
+ABREAST, MOST_ABREAST = 12.0, 4
+"""Of causes that are faint, so many that are no farther behind the first are led to the phase."""
+
+
+class Found(NamedTuple):
+    """Single causes to first order, hypotheses, whether by the ring, and what was led so far."""
+
+    screened: Sequence[Scored]
+    fitted: Sequence[Fitted]
+    faint: bool
+    led: "Led | None" = None
+
+
+class Led(NamedTuple):
+    """What was led to the ring's phase so far, and what the ring promised alone."""
+
+    search: FollowedSearch
+    single: Sequence[Fitted]
+
+
+class Start(NamedTuple):
+    """Where some of the recordings have led to, from where all of them are.
+
+    Attributes
+    ----------
+    nuisance
+        Of parameters alone, in sigmas.
+    hypotheses
+        What was found there, the best first, its point that of the whole system; what else they
+        say is of those recordings. None: parameters alone came to the noise.
+    """
+
+    nuisance: Array
+    hypotheses: Sequence[Fitted] = ()
+
+
+def by_ring(
+    refiner: Refiner, most_causes: int, tell: Tell | None, start: Start | None = None
+) -> Found:
+    """By every sample, ring and all; no hypotheses, where that does not come to the noise.
+
+    Parameters
+    ----------
+    refiner
+        Fits hypotheses.
+    most_causes
+        Of a hypothesis.
+    tell
+        Told of progress.
+    start
+        From where; None: from the likeliest parameters, by growing windows.
+    """
+
+    def following(done: int, total: int) -> None:
+        if tell is not None:
+            tell("following the ring", done, total)
+
+    system = refiner.system
+    if start is not None and start.hypotheses:
+        nothing = _standing(system, start.nuisance)
+        led = FollowedSearch(refiner, nothing, most_causes, following, near=True)
+        led.follow(start.hypotheses, ())
+        rung = led.fitted() if led.arrived else None
+        return Found((), rung or (), faint=rung is not None)
+    at = refiner.calibrated.at if start is None else start.nuisance
+    nothing = follow_ring(system, at, everything=True)
+    near = nothing.left < FAINT and nothing.about is None
+    if start is not None and not near:
+        return Found((), (), faint=False)
+    chosen = [one for one in system.candidates if not one.fixed]
+    about = faint(system, nothing, chosen, following)
+    if near:
+        screened, faintly = faint_search(about, refiner, refiner.candidates)
+        if not _promising(faintly):
+            return Found(screened, faintly, faint=True)
+        single = [one for one in faintly if len(one.hypothesis.parts) == 1]
+    else:
+        promised = one_more(about, refiner)
+        screened, faintly = promised, []
+        single = [fitted_there(about, refiner, one) for one in promised]
+    led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
+    # Where parameters alone come to the noise, what they made up for could be several things.
+    led.follow(_abreast(single) if nothing.left < FAINT else single[:1], single)
+    if near or led.arrived:
+        rung = led.fitted()
+        return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
+    return Found((), (), faint=False, led=Led(led, single))
+
+
+def _standing(system: System, nuisance: Array) -> Followed:
+    """Parameters where they stand, not led."""
+    at = Followed(nuisance, None, share=0.0)
+    (found,) = Samples(system, everything=True).residuals([at.point])
+    return replace(at, misfit=float(found @ found), left=float(np.mean(found**2)))
+
+
+def _abreast(single: Sequence[Fitted]) -> list[Fitted]:
+    """The likeliest of what the ring tells in straight lines; rivals among them."""
+    least = max(one.log_score for one in single) - ABREAST
+    return [one for one in single if one.log_score > least][:MOST_ABREAST]
+
+
+def _beside(rung: Sequence[Fitted], faintly: Sequence[Fitted]) -> list[Fitted]:
+    """What was led to the ring's phase, and single causes that were not, as far behind as told."""
+    led = {one.hypothesis.names: one.log_score for one in rung}
+    told = {one.hypothesis.names: one.log_score for one in faintly}
+    common = [names for names in told if names in led and names]
+    if not common:
+        return list(rung)
+    rise = max(led[names] for names in common) - max(told[names] for names in common)
+    others = [
+        replace(one, log_score=one.log_score + rise)
+        for one in faintly
+        if one.hypothesis.names not in led and len(one.hypothesis.parts) == 1
+    ]
+    return sorted([*rung, *others], key=lambda one: -one.log_score)
+
+
+def rings(system: System) -> bool:
+    """Whether the system has tones of its own."""
+    return any(bundle.tones_hz for bundle in system.bundles)
+
+
+def _promising(faintly: Sequence[Fitted]) -> bool:
+    """Whether anything explains, in straight lines, much more than parameters do."""
+    nothing = next(one for one in faintly if not one.hypothesis.parts)
+    return faintly[0].log_score > nothing.log_score + WORTH_FOLLOWING

@@ -1,0 +1,68 @@
+"""Some recordings of a system, as a system of their own."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from analysis.engine.system import Array, Bundle, Candidate, Nuisance, Point, Prediction, System
+
+
+class Part:
+    """Some recordings of a system, with the nuisances that move anything there.
+
+    Parameters
+    ----------
+    system
+        All of it.
+    records
+        Names of the recordings.
+    """
+
+    def __init__(self, system: System, records: Sequence[str]) -> None:
+        self._system = system
+        self._records = tuple(records)
+        self._chosen = [i for i, one in enumerate(system.bundles) if one.record in records]
+        self._free = [i for i, one in enumerate(system.nuisances) if one.record in ("", *records)]
+        self.name = ", ".join(records)
+        self.bundles: tuple[Bundle, ...] = tuple(system.bundles[i] for i in self._chosen)
+        self.nuisances: tuple[Nuisance, ...] = tuple(system.nuisances[i] for i in self._free)
+
+    @property
+    def candidates(self) -> Sequence[Candidate]:
+        """See `System`."""
+        return self._system.candidates
+
+    def whole(self, nuisance: Array, beside: Array | None = None) -> Array:
+        """Nuisances of the whole system, in sigmas.
+
+        Parameters
+        ----------
+        nuisance
+            Those of this part, shape (p,).
+        beside
+            The whole system's, shape (nuisances,): what is of other recordings is from there;
+            None: as it is known.
+        """
+        found = np.zeros(len(self._system.nuisances)) if beside is None else beside.copy()
+        found[self._free] = nuisance
+        return found
+
+    def own(self, nuisance: Array) -> Array:
+        """Of the whole system's nuisances those of this part, shape (p,)."""
+        return nuisance[self._free]
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        asked = [
+            replace(one, nuisance=self.whole(one.nuisance), records=self._records) for one in points
+        ]
+        return self._system.simulate(
+            asked, lambda prediction: reduce([prediction[i] for i in self._chosen])
+        )
+
+
+def records_of(system: System) -> list[str]:
+    """Names of a system's recordings, in their order."""
+    return list(dict.fromkeys(one.record for one in system.bundles))
