@@ -27,6 +27,9 @@ FORM_WEIGHTS = (0.1, 0.15, 0.25, 0.3, 0.2)
 UNSEEN = 0.1
 """A direction of the nuisances that does less than this, in units of noise, is not seen."""
 
+UNSEEN_VARIANCE = 1e-200
+"""The pseudo-inverse has next to none for a number that does nothing."""
+
 FOLLOWED = 0.25
 """Of what nuisances take back of a change, this share counts as the law's."""
 
@@ -251,7 +254,11 @@ def weigh(
     log_evidence = float(np.logaddexp.reduce(np.array(logs) + np.log(weights)))
     estimate, matrix, frame, chi2, variance, gain = kept[best]
     covariance: Array = np.asarray(np.linalg.pinv(matrix), dtype=float) if matrix.size else matrix
-    variances = np.maximum(np.diag(covariance), 1e-300) if matrix.size else np.zeros(0)
+    variances = np.diag(covariance)
+    # What does nothing here explains nothing.
+    gains = np.divide(
+        estimate**2, variances, out=np.zeros_like(estimate), where=variances > UNSEEN_VARIANCE
+    )
     return Weighed(
         log_evidence=log_evidence,
         estimate=estimate,
@@ -259,7 +266,7 @@ def weigh(
         nuisance=frame.nuisance(stacked, estimate),
         chi2=chi2,
         variance=variance,
-        gains=estimate**2 / variances,
+        gains=gains,
         gain=gain,
     )
 

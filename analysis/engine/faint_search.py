@@ -87,8 +87,7 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     found, refiner
         As for `faint_search`.
     explains
-        Share of what is left beyond the noise, as the score counts it, that it must promise to
-        explain.
+        Share of what is left, as the score counts it, that it must promise to explain.
     """
     chosen = {one.name: one for one in others_beside(refiner, found.followed)}
     state = found.followed.state
@@ -102,9 +101,8 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
         own=found.own,
         state=state,
     )
-    null = screen.null()
-    nothing, beyond = null.log_score, null.weighed.chi2 - len(found.problem.residual)
-    least = nothing + ASKS + 0.5 * explains * max(beyond, 0.0)
+    nothing = screen.null().log_score
+    least = nothing + ASKS + explains * max(-nothing, 0.0)
     best = [one for one in _best(screen, chosen, on) if one.log_score > least]
     simpler = (_simpler(screen, one, nothing) for one in best)
     return sorted(simpler, key=lambda one: -one.log_score)

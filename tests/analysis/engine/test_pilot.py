@@ -1,0 +1,128 @@
+"""Several recordings of one oscillator: one leads the way, and all are led from there."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.engine.by_ring import by_ring
+from analysis.engine.look import look
+from analysis.engine.part import Part, records_of
+from analysis.engine.pilot import _next, by_pilot
+from analysis.engine.refine import Refiner
+from analysis.engine.search import search
+from analysis.engine.system import (
+    Array,
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Segment,
+    Term,
+)
+
+TONE_HZ, SIGMA, NOISE, OFFSET = 5.0, 0.01, 0.02, 0.05
+T_S = np.arange(0.0, 20.0, 0.02)
+HEIGHTS = {"low": 0.3, "middle": 1.0, "high": 2.0, "higher": 4.0}
+"""How far each recording's oscillator was pulled before it was let go."""
+
+DAMPING_1_PER_S, TONE = 0.2, 2.0
+
+
+def cause(name: str, step: float) -> Candidate:
+    return Candidate(name, name, "plant", (Term(name, name, "", "", 0.0, 2.0, step),))
+
+
+class LetGoOften:
+    """An oscillator of which the tone is known to a share; each recording has its own offset."""
+
+    name = "let go often"
+    nuisances: Sequence[Nuisance] = (
+        Nuisance("tone", SIGMA, "1"),
+        *(Nuisance(f"offset of {one}", OFFSET, "V", record=one) for one in HEIGHTS),
+    )
+    candidates: Sequence[Candidate] = (cause("damping", 0.1), cause("hardening", 0.01))
+
+    def __init__(self, damping_1_per_s: float = DAMPING_1_PER_S) -> None:
+        self.simulated: list[str] = []
+        draw = np.random.default_rng(1)
+        truth = [self._one(name, TONE, 0.5, damping_1_per_s, 0.0) for name in HEIGHTS]
+        rest, ringing = Segment(0.0, 1.0, None, 20.0, name="rest"), Segment(1.0, 20.0, None, 20.0)
+        self.bundles = tuple(
+            Bundle(
+                ("y",), ("V",), T_S, value + NOISE * draw.standard_normal(value.shape),
+                np.eye(1) * NOISE**2, (rest, ringing), record=name, tones_hz=(TONE_HZ,),
+            )
+            for name, value in zip(HEIGHTS, truth, strict=True)
+        )  # fmt: skip
+        self.simulated.clear()
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [reduce([self._of(point, k, one) for k, one in enumerate(HEIGHTS)])
+                for point in points]  # fmt: skip
+
+    def _of(self, point: Point, place: int, name: str) -> Array:
+        if point.records and name not in point.records:
+            return np.full((len(T_S), 1), np.nan)
+        values = {one: point.effects[one].values[one] for one in point.effects}
+        return self._one(
+            name, float(point.nuisance[0]), float(point.nuisance[1 + place]),
+            values.get("damping", 0.0), values.get("hardening", 0.0),
+        )  # fmt: skip
+
+    def _one(self, name: str, tone: float, offset: float, damping: float, harder: float) -> Array:
+        self.simulated.append(name)
+        since, height = np.maximum(T_S - 1.0, 0.0), HEIGHTS[name]
+        turn = 2.0 * np.pi * TONE_HZ * (1.0 + SIGMA * tone + harder * height**2)
+        ring = height * np.exp(-damping * since) * np.cos(turn * since)
+        return np.asarray(ring * (T_S >= 1.0) + OFFSET * offset)[:, None]
+
+
+def refiner(system: LetGoOften) -> Refiner:
+    return Refiner(system, *look(system))
+
+
+def test_a_part_is_asked_for_its_own_recordings_alone() -> None:
+    system = LetGoOften()
+    part = Part(system, ("high",))
+    assert [one.record for one in part.bundles] == ["high"]
+    assert [one.name for one in part.nuisances] == ["tone", "offset of high"]
+    (found,) = part.simulate([Point(np.array([1.0, 2.0]))], lambda prediction: prediction)
+    assert system.simulated == ["high"]
+    assert found[0] == pytest.approx(system._one("high", 1.0, 2.0, 0.0, 0.0))
+
+
+def test_a_parts_nuisances_and_the_wholes_are_told_from_each_other() -> None:
+    part = Part(LetGoOften(), ("high",))
+    whole = part.whole(np.array([1.0, 2.0]), beside=np.full(5, 7.0))
+    assert whole == pytest.approx([1.0, 7.0, 7.0, 2.0, 7.0])
+    assert part.own(whole) == pytest.approx([1.0, 2.0])
+
+
+def test_the_pilot_is_the_recording_that_is_least_off_and_was_not_tried() -> None:
+    system = LetGoOften()
+    assert _next(system, np.zeros(5), []) == "low"
+    assert _next(system, np.zeros(5), ["low"]) == "middle"
+    assert _next(system, np.zeros(5), records_of(system)) is None
+
+
+def test_what_is_left_out_is_found_in_all_with_fewer_simulated_recordings() -> None:
+    alone, piloted = LetGoOften(), LetGoOften()
+    by_windows = by_ring(refiner(alone), 2, None)
+    by_one = by_pilot(refiner(piloted), 2, None)
+    for found in (by_windows, by_one):
+        assert found.fitted[0].hypothesis.names == ("damping",)
+        damping = found.fitted[0].values["damping", "damping"]
+        assert damping == pytest.approx(DAMPING_1_PER_S, abs=2e-3)
+    assert by_one.fitted[0].left == pytest.approx(by_windows.fitted[0].left, abs=0.01)
+    assert len(piloted.simulated) < len(alone.simulated)
+
+
+def test_where_nothing_is_left_out_all_come_to_the_noise() -> None:
+    found = search(LetGoOften(damping_1_per_s=0.0))
+    assert found.faint
+    assert found.fitted[0].hypothesis.names == ()
+    assert found.fitted[0].left == pytest.approx(1.0, abs=0.05)
