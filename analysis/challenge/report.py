@@ -147,13 +147,13 @@ def write_report(score: Score, path: Path, remark: str = "") -> list[Path]:
     figures = path.parent / "figures"
     figures.mkdir(parents=True, exist_ok=True)
     text = report(score, remark=remark)
-    written = draw_confusion(score.confusion, figures / "proof_confusion")
+    written = draw_confusion(score.confusion, figures / f"{path.stem}_confusion")
     text += "\n## Confusion\n\n![what was concealed against what was named]"
-    text += "(figures/proof_confusion.svg)\n"
+    text += f"(figures/{path.stem}_confusion.svg)\n"
     pairs = stated(score.grades)
     if pairs:
-        written += draw_calibration(pairs, figures / "proof_calibration")
+        written += draw_calibration(pairs, figures / f"{path.stem}_calibration")
         text += "\n## Calibration\n\n![share that was right against the probability stated]"
-        text += "(figures/proof_calibration.svg)\n"
+        text += f"(figures/{path.stem}_calibration.svg)\n"
     path.write_text(text, encoding="utf-8")
     return [path, *written]
