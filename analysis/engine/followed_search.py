@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from analysis.engine.all_samples import (
     all_samples_say,
     cost_of,
@@ -16,10 +14,10 @@ from analysis.engine.faint import faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.kin import lead_from, lead_instead
+from analysis.engine.kin import kin_of, lead_from, lead_instead, part_of_the_way
 from analysis.engine.part import records_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import BEHIND, follow_ring
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
@@ -49,9 +47,6 @@ share of the time, the ring tells nothing of what is left out."""
 EXPLAINS = 0.05
 """Beside a law that was led to the end, one cause more is tried where it promises to explain this
 share of what that leaves."""
-
-SHARES = (0.5, 0.2, 0.05)
-"""Of what straight lines promise of it, one cause more begins with all, or with so much."""
 
 WORTH_IT = 30.0
 """Where it then does no better than this, in squared misfit, what it is, or may be without, is not
@@ -123,7 +118,8 @@ class FollowedSearch:
         if nowhere and not self._near:
             return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
-        for one in self._fresh(self._kin(others)):
+        family = {name: one.family for name, one in self._refiner.candidates.items()}
+        for one in self._fresh(kin_of(self._best, self._led, others, family)):
             if self._best.to_end and not self._near:
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
@@ -229,22 +225,6 @@ class FollowedSearch:
                 if found is not None:
                     self._keep(found)
 
-    def _kin(self, others: Sequence[Fitted]) -> list[Fitted]:
-        """Other laws of the things that came as far as the best."""
-        family = {name: one.family for name, one in self._refiner.candidates.items()}
-        share, cost = self._best.reached
-        far = [
-            one for one in self._led if one.reached[0] == share and one.reached[1] < cost + BEHIND
-        ]
-        known = {one.names for one in self._led}
-        kin = {family[name] for one in far for name in one.names} - {""}
-        found: dict[tuple[str, ...], Fitted] = {}
-        for one in others:
-            names = one.hypothesis.names
-            if names not in known and family[names[0]] in kin:
-                found.setdefault(names, one)
-        return list(found.values())
-
     def _one_more(self) -> bool:
         """Try one cause more beside the best; whether that leads farther."""
         best, refiner = self._best, self._refiner
@@ -260,7 +240,7 @@ class FollowedSearch:
         def lead(scored: Scored) -> Followed:
             start = Followed(nuisances_of(found, scored), State.of(scored, refiner.candidates))
             if best.to_end:
-                start = self._nearest(best, start)
+                start = part_of_the_way(self._samples, best, start)
             assert start.state is not None
             self._lead(start.nuisance, start.state, near=best.to_end)
             return self._led[-1]
@@ -279,17 +259,6 @@ class FollowedSearch:
             if scored.hypothesis.names not in known and self._effort < self._most:
                 self._lead_like(tried[kind], scored, best.names)
         return True
-
-    def _nearest(self, best: Followed, far: Followed) -> Followed:
-        """So much of what straight lines promise beside the best as leaves least."""
-        assert far.state is not None
-        tried = [far]
-        for share in SHARES:
-            nuisance = best.nuisance + share * (far.nuisance - best.nuisance)
-            tried.append(Followed(nuisance, far.state.nearer(best.state, share)))
-        left = self._samples.residuals([one.point for one in tried])
-        costs = [found @ found + one.strain for found, one in zip(left, tried, strict=True)]
-        return tried[int(np.argmin(costs))]
 
     def _one_less(self, whole: Followed) -> None:
         """Try without one cause, from where one more led to: each may only have shown the way."""

@@ -8,9 +8,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Part
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
@@ -23,6 +24,9 @@ CLOSER, ROUNDS = 1.13, 6
 
 FIRST_PART = 0.2
 """Share of the time that tells how strong the other law is."""
+
+SHARES = (0.5, 0.2, 0.05)
+"""Of what straight lines promise of it, one cause more begins with all, or with so much."""
 
 EFFORT = 400.0
 """Whole simulations for one of kin: some three times all differences."""
@@ -77,6 +81,56 @@ def lead_from(system: System, law: Followed, state: State) -> Followed:
         system, law.nuisance, state, everything=True, near=True, ahead=law.costs,
         most=FAR_EFFORT if made_up else EFFORT, lent=None if made_up else law.columns,
     )  # fmt: skip
+
+
+def kin_of(
+    best: Followed, led: Sequence[Followed], others: Sequence[Fitted], family: Mapping[str, str]
+) -> list[Fitted]:
+    """Other laws of the things that came as far as the best.
+
+    Parameters
+    ----------
+    best
+        What came farthest.
+    led
+        All that was led.
+    others
+        Single causes, the best first.
+    family
+        Candidate -> its family.
+    """
+    share, cost = best.reached
+    far = [one for one in led if one.reached[0] == share and one.reached[1] < cost + BEHIND]
+    known = {one.names for one in led}
+    kin = {family[name] for one in far for name in one.names} - {""}
+    found: dict[tuple[str, ...], Fitted] = {}
+    for one in others:
+        names = one.hypothesis.names
+        if names not in known and family[names[0]] in kin:
+            found.setdefault(names, one)
+    return list(found.values())
+
+
+def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed:
+    """So much of what straight lines promise as leaves least.
+
+    Parameters
+    ----------
+    samples
+        By which it is told.
+    best
+        Led to the end.
+    far
+        With one cause more, where straight lines about the best say.
+    """
+    assert far.state is not None
+    tried = [far]
+    for share in SHARES:
+        nuisance = best.nuisance + share * (far.nuisance - best.nuisance)
+        tried.append(Followed(nuisance, far.state.nearer(best.state, share)))
+    left = samples.residuals([one.point for one in tried])
+    costs = [found @ found + one.strain for found, one in zip(left, tried, strict=True)]
+    return tried[int(np.argmin(costs))]
 
 
 def _alike(samples: Samples, law: Followed, known: str, other: str) -> State:

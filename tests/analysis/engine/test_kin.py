@@ -1,11 +1,26 @@
 """Another law of the same thing in the place of one that is on."""
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
 import pytest
 
+from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.kin import instead
+from analysis.engine.kin import instead, part_of_the_way
+from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Candidate, Shape, Term
+from analysis.engine.system import (
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Segment,
+    Shape,
+    Term,
+)
 
 
 def law(name: str, step: float, places: str, *shapes: Shape) -> Candidate:
@@ -48,3 +63,52 @@ def test_numbers_of_shape_that_both_have_stay_as_far_as_they_may() -> None:
 
 def test_a_law_that_has_no_such_places_is_none() -> None:
     assert instead(dry_on(**{"size@2": 0.3}), "dry", "elsewhere") is None
+
+
+def test_part_of_the_way_to_one_cause_more_takes_part_of_each_step_and_of_the_new_cause() -> None:
+    best = dry_on(**{"size@1": 0.6})
+    with_more = Hypothesis(
+        {"dry": best.hypothesis.parts["dry"], "elsewhere": Part(("size@4",), False, {})}
+    )
+    sizes = {("dry", "size@1"): 1.0, ("elsewhere", "size@4"): 0.4}
+    half = State.at(with_more, sizes, CANDIDATES).nearer(best, 0.5)
+    assert half.term_values() == {
+        ("dry", "size@1"): pytest.approx(0.8),
+        ("elsewhere", "size@4"): pytest.approx(0.2),
+    }
+
+
+class _Bent:
+    """What one number does is straight, and what the cause does grows with its cube."""
+
+    name = "bent"
+    nuisances = (Nuisance("level", 1.0, "V"),)
+    candidates = (ELSEWHERE,)
+
+    def __init__(self) -> None:
+        times = np.arange(0.0, 1.0, 0.01)
+        whole = (Segment(0.0, 1.0, None, 20.0),)
+        value = np.full((100, 1), 0.9)
+        self.bundles = (Bundle(("y",), ("V",), times, value, np.eye(1) * 1e-4, whole),)
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [
+            reduce([np.full((100, 1), one.nuisance[0] + sum(
+                setting.values["size@4"] ** 3 for setting in one.effects.values()))])
+            for one in points
+        ]  # fmt: skip
+
+
+def test_where_straight_lines_promise_too_much_less_of_it_is_begun_with() -> None:
+    system = _Bent()
+    state = State.at(
+        Hypothesis({"elsewhere": Part(("size@4",), False, {})}),
+        {("elsewhere", "size@4"): 5.0},
+        {"elsewhere": ELSEWHERE},
+    )
+    far = Followed(np.array([0.5]), state)
+    begun = part_of_the_way(Samples(system), Followed(np.array([0.4]), None), far)
+    assert begun.state is not None
+    assert begun.state.values[0] == pytest.approx(0.05 * 5.0)
+    assert begun.nuisance[0] == pytest.approx(0.405)
