@@ -16,7 +16,8 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
 
-STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.12, 1.25, 1.6, 2.0)
+STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.12,
+             1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0)  # fmt: skip
 """Sizes that laws are screened at are alike to within so much."""
 
 CLOSER, ROUNDS = 1.13, 6
@@ -57,7 +58,7 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
     state = instead(law.state, known, other)
     if state is None:
         return None
-    state = _as_strong(samples, law.nuisance, _alike(samples, law, known, other))
+    state = _as_strong(samples, law.nuisance, _alike(samples, law, known, other), other)
     return lead_from(samples.system, law, state)
 
 
@@ -154,9 +155,14 @@ def _least(samples: Samples, nuisance: Array, tried: Sequence[State | None]) -> 
     return int(np.argmin([one @ one for one in samples.residuals(points, FIRST_PART)]))
 
 
-def _as_strong(samples: Samples, nuisance: Array, state: State) -> State:
-    """With magnitudes that leave least of the first part: by ever smaller factors."""
-    factors, ratio, best = list(STRENGTHS), CLOSER, 1.0
+def _as_strong(samples: Samples, nuisance: Array, state: State, other: str) -> State:
+    """With magnitudes that leave least of the first part: by ever smaller factors.
+
+    What the one counts as more of something the other may count as less of it.
+    """
+    signed = all(one.low < 0.0 for one in state.candidates[other].terms)
+    both = (1.0, -1.0) if signed else (1.0,)
+    factors, ratio, best = [sign * one for sign in both for one in STRENGTHS], CLOSER, 1.0
     for _ in range(ROUNDS):
         tried = [state.smaller(one) for one in factors]
         best = factors[_least(samples, nuisance, tried)]

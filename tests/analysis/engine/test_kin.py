@@ -1,6 +1,7 @@
 """Another law of the same thing in the place of one that is on."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.kin import instead, part_of_the_way
+from analysis.engine.kin import instead, lead_instead, part_of_the_way
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import (
@@ -112,3 +113,40 @@ def test_where_straight_lines_promise_too_much_less_of_it_is_begun_with() -> Non
     assert begun.state is not None
     assert begun.state.values[0] == pytest.approx(0.05 * 5.0)
     assert begun.nuisance[0] == pytest.approx(0.405)
+
+
+LONGER = Candidate(
+    "longer", "", "plant", (Term("m", "m", "", "4", 0.0, 9.0, 0.1),), family="length"
+)
+TIGHTER = Candidate(
+    "tighter", "", "plant", (Term("n", "n", "", "4", -9.0, 9.0, 0.1),), family="length"
+)
+
+
+class _Pulled(_Bent):
+    """What makes a cable longer makes it less tight, by three times as much."""
+
+    candidates = (LONGER, TIGHTER)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.bundles = (replace(self.bundles[0], value=np.full((100, 1), -1.5)),)
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        found = []
+        for one in points:
+            longer = one.effects["longer"].values["m"] if "longer" in one.effects else 0.0
+            tighter = one.effects["tighter"].values["n"] if "tighter" in one.effects else 0.0
+            found.append(reduce([np.full((100, 1), tighter - 3.0 * longer)]))
+        return found
+
+
+def test_what_one_law_counts_as_more_another_may_count_as_less() -> None:
+    system = _Pulled()
+    known = {one.name: one for one in (LONGER, TIGHTER)}
+    state = State.at(Hypothesis({"longer": Part(("m",))}), {("longer", "m"): 0.5}, known)
+    found = lead_instead(Samples(system), Followed(np.zeros(1), state), "longer", "tighter")
+    assert found is not None
+    assert found.state is not None
+    assert found.state.values[0] == pytest.approx(-1.5, abs=0.01)
