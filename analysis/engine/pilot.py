@@ -46,8 +46,9 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
     """
     system, at = refiner.system, refiner.calibrated.at
     tried: list[str] = []
+    farthest = False
     for _ in range(PILOTS):
-        record = _next(system, at, tried)
+        record = _next(system, at, tried, farthest=farthest)
         if record is None:
             break
         tried.append(record)
@@ -61,6 +62,8 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         if whole.fitted:
             return whole
         at = start.nuisance
+        # Where one says nothing and all are not led, those that ring most know parameters best.
+        farthest = not start.hypotheses
     return Found((), (), faint=False)
 
 
@@ -78,10 +81,12 @@ def _lifted(part: Part, found: Sequence[Fitted], beside: Array) -> Start:
     return Start(whole[0].point.nuisance, causes[:MOST_LIFTED])
 
 
-def _next(system: System, nuisance: Array, tried: Sequence[str]) -> str | None:
-    """The recording that is nearest to its simulation, of those that are off.
+def _next(
+    system: System, nuisance: Array, tried: Sequence[str], *, farthest: bool = False
+) -> str | None:
+    """The recording that is nearest to its simulation, or farthest from it, of those that are off.
 
-    There rings are least, and are followed farthest.
+    In the nearest rings are least, and are followed farthest.
     """
     left = {}
     for name in records_of(system):
@@ -91,4 +96,4 @@ def _next(system: System, nuisance: Array, tried: Sequence[str]) -> str | None:
             (found,) = Samples(part, everything=True).residuals([point])
             left[name] = float(np.mean(found**2))
     off = {name: one for name, one in left.items() if one > FAINT} or left
-    return min(off, key=lambda name: off[name], default=None)
+    return (max if farthest else min)(off, key=lambda name: off[name], default=None)
