@@ -90,6 +90,8 @@ class RecordedMachine:
         )
         self._workers = workers
         self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]
+        self._nothing = [[np.zeros_like(bundle.value) for bundle in one.bundles]
+                         for one in recordings]  # fmt: skip
         self.simulated = 0
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
@@ -123,10 +125,8 @@ class RecordedMachine:
         found: list[dict[int, Prediction]] = [{} for _ in self.recordings]
         for share, seen in zip(shares, self._all(shares), strict=True):
             found[share.record].update(seen)
-        nothing = [[np.zeros_like(bundle.value) for bundle in one.bundles]
-                   for one in self.recordings]  # fmt: skip
         return [
-            reduce([bundle for of_record, none in zip(found, nothing, strict=True)
+            reduce([bundle for of_record, none in zip(found, self._nothing, strict=True)
                     for bundle in of_record.get(place, none)])
             for place in range(len(points))
         ]  # fmt: skip

@@ -60,7 +60,8 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         start = _lifted(part, found.fitted, at)
         whole = by_ring(refiner, most_causes, tell, start)
         if whole.fitted:
-            return whole
+            # What the pilot screened stays told, where all were led from what it found.
+            return whole._replace(screened=whole.screened or found.screened)
         at = start.nuisance
         # Where one says nothing and all are not led, those that ring most know parameters best.
         farthest = not start.hypotheses

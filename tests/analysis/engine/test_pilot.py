@@ -117,6 +117,7 @@ def test_what_is_left_out_is_found_in_all_with_fewer_simulated_recordings() -> N
         assert found.fitted[0].hypothesis.names == ("damping",)
         damping = found.fitted[0].values["damping", "damping"]
         assert damping == pytest.approx(DAMPING_1_PER_S, abs=2e-3)
+    assert by_one.screened[0].hypothesis.names == ("damping",)
     assert by_one.fitted[0].left == pytest.approx(by_windows.fitted[0].left, abs=0.01)
     assert len(piloted.simulated) < len(alone.simulated)
 
