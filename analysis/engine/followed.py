@@ -47,6 +47,9 @@ class Followed:
         Whether that is of just there.
     borrowed
         Whether that is still, but for corrections, what was lent by another hypothesis.
+    information
+        What all samples tell of the free numbers about there, shape (numbers, numbers): the inverse
+        of a covariance, without what was known of them before. None: not known.
     """
 
     nuisance: Array
@@ -61,6 +64,7 @@ class Followed:
     columns: Array | None = None
     fresh: bool = False
     borrowed: bool = False
+    information: Array | None = None
 
     @property
     def point(self) -> Point:

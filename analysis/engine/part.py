@@ -24,10 +24,14 @@ class Part:
         self._system = system
         self._records = tuple(records)
         self._chosen = [i for i, one in enumerate(system.bundles) if one.record in records]
-        self._free = [i for i, one in enumerate(system.nuisances) if one.record in ("", *records)]
+        self.places = np.array(
+            [i for i, one in enumerate(system.nuisances) if one.record in ("", *records)],
+            dtype=np.int64,
+        )
+        """Places of its nuisances among the whole system's."""
         self.name = ", ".join(records)
         self.bundles: tuple[Bundle, ...] = tuple(system.bundles[i] for i in self._chosen)
-        self.nuisances: tuple[Nuisance, ...] = tuple(system.nuisances[i] for i in self._free)
+        self.nuisances: tuple[Nuisance, ...] = tuple(system.nuisances[i] for i in self.places)
 
     @property
     def candidates(self) -> Sequence[Candidate]:
@@ -46,12 +50,12 @@ class Part:
             None: as it is known.
         """
         found = np.zeros(len(self._system.nuisances)) if beside is None else beside.copy()
-        found[self._free] = nuisance
+        found[self.places] = nuisance
         return found
 
     def own(self, nuisance: Array) -> Array:
         """Of the whole system's nuisances those of this part, shape (p,)."""
-        return nuisance[self._free]
+        return nuisance[self.places]
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""

@@ -1,31 +1,33 @@
-"""Several recordings: one leads the way, and from where it came to all are led.
+"""Several recordings: one leads the way, and the others are led from where it came to.
 
 To lead parameters to the ring's phase by growing windows is as long a way in eight recordings as in
 one, and each step takes eight times as long. What one recording tells of parameters and causes is
-mostly near enough for the phase of all others at once; and what it cannot part, all of them do.
+handed on to the next, and at the end all are led at once, over the little way that is left.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from analysis.engine.by_ring import Found, Start, by_ring
+from analysis.engine.chain import chained
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT
+from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.system import Array, System
 
 PILOTS_FROM = 3
 """From so many recordings on one leads the way."""
 
-PILOTS = 3
-"""So many are tried."""
+CHAINS, PILOTS = 2, 3
+"""So many are tried to begin with where nothing is left out, and where something is."""
 
 LIFTED, MOST_LIFTED = 40.0, 6
 """What is no farther behind the best of the pilot, as a score, is led in all recordings, at most so
@@ -45,41 +47,77 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         Told of progress.
     """
     system, at = refiner.system, refiner.calibrated.at
+    nothing = _nothing(system, at, tell)
+    if nothing.nuisance is not None:
+        whole = by_ring(refiner, most_causes, tell, Start(nothing.nuisance))
+        if whole.fitted:
+            return whole
     tried: list[str] = []
-    farthest = False
-    for _ in range(PILOTS):
-        record = _next(system, at, tried, farthest=farthest)
+    for turn in range(PILOTS):
+        # Where parameters could not be led on, something says what is left out.
+        stuck = next((one for one in nothing.stuck if one not in tried), None)
+        record = stuck or _next(system, at, tried, farthest=turn > 0)
         if record is None:
             break
         tried.append(record)
         part = Part(system, (record,))
-        seen = look(part, tell)
-        found = by_ring(Refiner(part, *seen), most_causes, tell)
-        if not found.fitted:
-            continue
-        start = _lifted(part, found.fitted, at)
-        whole = by_ring(refiner, most_causes, tell, start)
-        if whole.fitted:
-            # What the pilot screened stays told, where all were led from what it found.
-            return whole._replace(screened=whole.screened or found.screened)
-        at = start.nuisance
-        # Where one says nothing and all are not led, those that ring most know parameters best.
-        farthest = not start.hypotheses
+        found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell)
+        hypotheses = _contending(found.fitted)
+        lifted = _lifted(system, record, hypotheses, at) if hypotheses else []
+        if lifted:
+            whole = by_ring(refiner, most_causes, tell, Start(lifted[0].point.nuisance, lifted))
+            if whole.fitted:
+                # What the pilot screened stays told, where all were led from what it found.
+                return whole._replace(screened=whole.screened or found.screened)
     return Found((), (), faint=False)
 
 
-def _lifted(part: Part, found: Sequence[Fitted], beside: Array) -> Start:
-    """From where all recordings are led."""
-    whole = [
-        replace(one, point=replace(one.point, nuisance=part.whole(one.point.nuisance, beside)))
-        for one in found
-    ]
-    nothing = next(one for one in whole if not one.hypothesis.parts)
-    if not whole[0].hypothesis.parts:
-        return Start(nothing.point.nuisance)
-    least = whole[0].log_score - LIFTED
-    causes = [one for one in whole if one.hypothesis.parts and one.log_score > least]
-    return Start(whole[0].point.nuisance, causes[:MOST_LIFTED])
+class _Nothing(NamedTuple):
+    """Where parameters alone led in all recordings, if they did, or where they could not be led."""
+
+    nuisance: Array | None
+    stuck: Sequence[str]
+
+
+def _nothing(system: System, at: Array, tell: Tell | None) -> _Nothing:
+    """Parameters alone, led through one recording after the other."""
+    tried: list[str] = []
+    stuck: list[str] = []
+    for _ in range(CHAINS):
+        record = _next(system, at, tried)
+        if record is None:
+            break
+        tried.append(record)
+        part = Part(system, (record,))
+        led = follow_ring(part, look(part, tell).calibrated.at, everything=True)
+        if led.share < 1.0:
+            stuck.append(record)
+            continue
+        found = chained(system, led, record, at)
+        if not found.stuck:
+            return _Nothing(found.nuisance, ())
+        stuck.append(found.stuck)
+    return _Nothing(None, stuck)
+
+
+def _contending(found: Sequence[Fitted]) -> list[Fitted]:
+    """Of what a pilot says, what is led in all recordings; none, where it says nothing."""
+    if not found or not found[0].hypothesis.parts:
+        return []
+    least = found[0].log_score - LIFTED
+    causes = [one for one in found if one.hypothesis.parts and one.log_score > least]
+    return causes[:MOST_LIFTED]
+
+
+def _lifted(system: System, record: str, found: Sequence[Fitted], beside: Array) -> list[Fitted]:
+    """Hypotheses of a pilot where they come to in all recordings, but for those that do not."""
+    lifted = []
+    for one in found:
+        led = chained(system, Followed(one.point.nuisance, one.state), record, beside)
+        if not led.stuck and led.state is not None:
+            point = replace(led.state.point(led.nuisance), ring="as_is")
+            lifted.append(replace(one, point=point, state=led.state))
+    return lifted
 
 
 def _next(

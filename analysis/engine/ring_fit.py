@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.followed import Followed
+from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
@@ -56,6 +57,7 @@ def follow_ring(
     ahead: Mapping[float, float] | None = None,
     most: float = EFFORT,
     lent: Array | None = None,
+    known: Known | None = None,
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -75,9 +77,11 @@ def follow_ring(
         Whole simulations, after which no step is begun.
     lent
         See `Way`: for what is near another hypothesis, over the same samples.
+    known
+        What is known of free numbers; None: priors of nuisances.
     """
     samples = Samples(system, held=held, everything=everything)
-    way = Way(samples, Followed(nuisance, state), lent)
+    way = Way(samples, Followed(nuisance, state), lent, known)
     costs: dict[float, float] = {}
     share = 0.0
     came: Followed | None = None

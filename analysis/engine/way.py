@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from analysis.engine.evidence import bounded
 from analysis.engine.followed import FINE, Followed
+from analysis.engine.known import LOOSE, Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.system import Array
 
@@ -47,9 +48,6 @@ not led on with fresh ones."""
 
 CATCHES_UP = 0.1
 """Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
-
-LOOSE = 0.02
-"""What is on is held where it is as if its number were known to its step over this."""
 
 STRAIGHT = 0.5
 """A step that brings less than this of what it promises, or as much more, has left where
@@ -89,10 +87,19 @@ class Way:
     lent
         What nuisances do to all samples about another hypothesis that is near, shape
         (nuisances, n): that serves until a step tells that it does not hold here.
+    known
+        What is known of free numbers; None: priors of nuisances.
     """
 
-    def __init__(self, samples: Samples, start: Followed, lent: Array | None = None) -> None:
+    def __init__(
+        self,
+        samples: Samples,
+        start: Followed,
+        lent: Array | None = None,
+        known: Known | None = None,
+    ) -> None:
         self._samples = samples
+        self._known = Known.priors(start) if known is None else known
         self.at = start
         self.here = np.zeros(0)
         self._seen = 0.0
@@ -142,14 +149,14 @@ class Way:
         return float(np.mean(residual[inside] ** 2)) if inside.any() else 0.0
 
     def cost(self, share: float) -> float:
-        """Squared misfit up to a share of the time, and of the parameters to their prior."""
+        """Squared misfit up to a share of the time, and to what is known of numbers."""
         self.look(share)
         inside = self.here[self._samples.shares <= share]
-        return float(inside @ inside + self.at.nuisance @ self.at.nuisance)
+        return float(inside @ inside) + self._known.cost(self.at.numbers)
 
     def strained(self, share: float) -> bool:
         """Whether parameters make up for something that is left out."""
-        strain = float(self.at.nuisance @ self.at.nuisance)
+        strain = self._known.cost(self.at.numbers)
         return strain > STRAIN or self.left(share) > self.allowed(share)
 
     def allowed(self, share: float) -> float:
@@ -212,16 +219,17 @@ class Way:
         assert self._columns is not None
         at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
         # What a short window does not tell of a law stays about where it is (Levenberg 1944).
-        known = np.ones(len(self._steps))
-        known[len(at) :] = (LOOSE * FINE / self._steps[len(at) :]) ** 2
-        matrix = columns @ columns.T + np.diag(known)
-        right = columns @ here
-        right[: len(at)] -= at
+        known = self._known.information.copy()
+        own = np.arange(len(at), len(known))
+        known[own, own] += (LOOSE * FINE / self._steps[own]) ** 2
+        matrix = columns @ columns.T + known
+        right = columns @ here - self._known.information @ (self.at.numbers - self._known.at)
         lows, highs = np.full(len(right), -np.inf), np.full(len(right), np.inf)
         if self.at.state is not None:
             lows[len(at) :], highs[len(at) :] = self.at.state.bounds()
         target = bounded(matrix, right, lows, highs)
-        before, promised = float(here @ here + at @ at), float(right @ target)
+        before = float(here @ here) + self._known.cost(self.at.numbers)
+        promised = float(right @ target)
         worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
         if promised < max(worth, CATCHES_UP * (before - best)):
             return 0.0
@@ -229,7 +237,7 @@ class Way:
         if found.fell < HALFWAY * promised:
             # Differences hold over less than that: shorter, and least along what tells least.
             for damping in DAMPINGS:
-                shorter = bounded(matrix + damping * np.diag(known), right, lows, highs)
+                shorter = bounded(matrix + damping * known, right, lows, highs)
                 nearer = self._along(shorter, inside, before)
                 if found.fell > max(nearer.fell, 0.0):
                     break
@@ -258,7 +266,7 @@ class Way:
         there = self.at.moved(change, 1.0)
         (residual,) = self._samples.residuals([there.point], self._seen)
         left = residual[inside]
-        now = float(left @ left + there.nuisance @ there.nuisance)
+        now = float(left @ left) + self._known.cost(there.numbers)
         return _Step(there, residual, before - now)
 
     def _learn(self, there: Followed, found: Array) -> None:
@@ -271,10 +279,12 @@ class Way:
         self.at, self.here, self._fresh = there, found, False
 
     def arrived(self) -> Followed:
-        """Where one is, with what nuisances do to all samples about there, as far as is known."""
+        """Where one is, with what numbers do to all samples about there, as far as is known."""
         columns = self._last if self._columns is None else self._columns
         if columns is None or self._seen < 1.0:
             return self.at
         fresh = self._fresh and self._columns is not None
-        columns = columns[: len(self.at.nuisance)]
-        return replace(self.at, columns=columns, fresh=fresh, borrowed=self._serves)
+        return replace(
+            self.at, columns=columns[: len(self.at.nuisance)], fresh=fresh,
+            borrowed=self._serves, information=columns @ columns.T,
+        )  # fmt: skip

@@ -1,0 +1,131 @@
+"""One recording after the other: each is led with what those before it told of all numbers.
+
+What a recording tells is kept as a quadratic about where it was led to: where numbers are likeliest
+and how surely (as Kalman's filter keeps it, 1960). So each step costs what one recording costs, and
+what one leaves open the next ones close; a number that would have to be two at once shows itself.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.engine.followed import Followed
+from analysis.engine.known import Known, Told
+from analysis.engine.part import Part, records_of
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.state import State
+from analysis.engine.system import Array, System
+from analysis.engine.way import LEAVES, STRAIN
+
+
+@dataclass(frozen=True)
+class Chained:
+    """Where recordings have led to, one after the other.
+
+    Attributes
+    ----------
+    nuisance
+        Of the whole system, in sigmas, shape (nuisances,).
+    state
+        The free numbers of what is on; None: nothing is.
+    led
+        Recordings that were led, in their order.
+    stuck
+        The recording that could not be led with what those before it told; "": none.
+    """
+
+    nuisance: Array
+    state: State | None
+    led: tuple[str, ...]
+    stuck: str = ""
+
+
+def chained(system: System, first: Followed, record: str, beside: Array) -> Chained:
+    """Lead recordings one after the other, the nearest next.
+
+    Parameters
+    ----------
+    system
+        All recordings.
+    first
+        Where one of them has come to: nuisances of that `Part`, and what is on.
+    record
+        Which.
+    beside
+        Nuisances of the other recordings to begin with, of the whole system, in sigmas.
+    """
+    part = Part(system, (record,))
+    start = Followed(part.whole(first.nuisance, beside), first.state)
+    told = Told(start)
+    told.add(part, first, _information(part, first))
+    led, left = [record], [one for one in records_of(system) if one != record]
+    later: list[str] = []
+    together = 1
+    while left or later:
+        nearest = min(left or later, key=lambda name: _off(system, name, told.at))
+        part = Part(system, (nearest,))
+        known = told.of(part)
+        found = _led(part, told.at, known)
+        if left:
+            left.remove(nearest)
+            if not _arrived(found) or _forced(part, found, known):
+                # Where more is known it may still go without force.
+                later.append(nearest)
+                continue
+        elif not _arrived(found):
+            if together == len(led):
+                return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
+            told, together = _together(system, led, told.at), len(led)
+            continue
+        else:
+            later.remove(nearest)
+        told.add(part, found, _information(part, found))
+        led.append(nearest)
+    return Chained(told.at.nuisance, told.at.state, tuple(led))
+
+
+def _together(system: System, records: Sequence[str], at: Followed) -> Told:
+    """What recordings told, led once more all at once: quadratics bend."""
+    part = Part(system, records)
+    found = follow_ring(part, part.own(at.nuisance), at.state, everything=True, near=True)
+    told = Told(Followed(part.whole(found.nuisance, at.nuisance), found.state))
+    told.add(part, found, _information(part, found))
+    return told
+
+
+def _forced(part: Part, found: Followed, known: Known) -> bool:
+    """Whether numbers had to go far from what was known, and more than noise is left."""
+    count = len(Samples(part, everything=True).shares)
+    noise = 1.0 + LEAVES * float(np.sqrt(2.0 / count))
+    return found.misfit > noise * count and known.cost(found.numbers) > STRAIN
+
+
+def _led(part: Part, at: Followed, known: Known) -> Followed:
+    """A recording, led with what others told."""
+    return follow_ring(part, part.own(at.nuisance), at.state, everything=True, known=known)
+
+
+def _arrived(found: Followed) -> bool:
+    """Whether a recording came to the noise; a law that is not exact, to its end."""
+    return found.share == 1.0 or (found.state is not None and found.to_end)
+
+
+def _information(part: Part, found: Followed) -> Array:
+    """What a part's samples tell of its numbers about where it was led to."""
+    if found.information is not None:
+        return found.information
+    samples = Samples(part, everything=True)
+    points, steps = found.neighbours()
+    here, *others = samples.residuals([found.point, *points])
+    columns = (here - np.stack(others)) / steps[:, None]
+    return np.asarray(columns @ columns.T)
+
+
+def _off(system: System, record: str, at: Followed) -> float:
+    """Squared misfit of a recording's sample, on average."""
+    part = Part(system, (record,))
+    there = Followed(part.own(at.nuisance), at.state)
+    (found,) = Samples(part, everything=True).residuals([there.point])
+    return float(np.mean(found**2))
