@@ -88,8 +88,6 @@ def by_ring(
     at = refiner.calibrated.at if start is None else start.nuisance
     nothing = follow_ring(system, at, everything=True)
     near = nothing.left < FAINT and nothing.about is None
-    if start is not None and nothing.left >= FAINT:
-        return Found((), (), faint=False)
     chosen = [one for one in system.candidates if not one.fixed]
     about = faint(system, nothing, chosen, following)
     if near:

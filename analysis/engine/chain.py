@@ -19,6 +19,10 @@ from analysis.engine.state import State
 from analysis.engine.system import Array, System
 from analysis.engine.way import LEAVES, STRAIN
 
+ANOTHER = 500.0
+"""Where parameters alone have to go so far from what was known, squared and in standard deviations,
+something is left out, even if it then leaves nothing."""
+
 
 @dataclass(frozen=True)
 class Chained:
@@ -42,7 +46,7 @@ class Chained:
     stuck: str = ""
 
 
-def chained(system: System, first: Followed, record: str, beside: Array) -> Chained:
+def chained(system: System, first: Followed, records: Sequence[str], beside: Array) -> Chained:
     """Lead recordings one after the other, the nearest next.
 
     Parameters
@@ -50,19 +54,20 @@ def chained(system: System, first: Followed, record: str, beside: Array) -> Chai
     system
         All recordings.
     first
-        Where one of them has come to: nuisances of that `Part`, and what is on.
-    record
+        Where some of them have come to: nuisances of that `Part`, and what is on.
+    records
         Which.
     beside
         Nuisances of the other recordings to begin with, of the whole system, in sigmas.
     """
-    part = Part(system, (record,))
+    part = Part(system, records)
     start = Followed(part.whole(first.nuisance, beside), first.state)
     told = Told(start)
     told.add(part, first, _information(part, first))
-    led, left = [record], [one for one in records_of(system) if one != record]
+    led = list(records)
+    left = [one for one in records_of(system) if one not in led]
     later: list[str] = []
-    together = 1
+    together = len(led)
     while left or later:
         nearest = min(left or later, key=lambda name: _off(system, name, told.at))
         part = Part(system, (nearest,))
@@ -70,11 +75,11 @@ def chained(system: System, first: Followed, record: str, beside: Array) -> Chai
         found = _led(part, told.at, known)
         if left:
             left.remove(nearest)
-            if not _arrived(found) or _forced(part, found, known):
+            if not _arrived(found, known) or _forced(part, found, known):
                 # Where more is known it may still go without force.
                 later.append(nearest)
                 continue
-        elif not _arrived(found):
+        elif not _arrived(found, known):
             if together == len(led):
                 return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
             told, together = _together(system, led, told.at), len(led)
@@ -107,9 +112,11 @@ def _led(part: Part, at: Followed, known: Known) -> Followed:
     return follow_ring(part, part.own(at.nuisance), at.state, everything=True, known=known)
 
 
-def _arrived(found: Followed) -> bool:
-    """Whether a recording came to the noise; a law that is not exact, to its end."""
-    return found.share == 1.0 or (found.state is not None and found.to_end)
+def _arrived(found: Followed, known: Known) -> bool:
+    """Whether a recording came to the noise and near to what was known; a law, to its end."""
+    if found.state is not None:
+        return found.share == 1.0 or found.to_end
+    return found.share == 1.0 and known.cost(found.numbers) < ANOTHER
 
 
 def _information(part: Part, found: Followed) -> Array:

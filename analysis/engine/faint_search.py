@@ -104,6 +104,8 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     nothing = screen.null().log_score
     least = nothing + ASKS + explains * max(-nothing, 0.0)
     best = [one for one in _best(screen, chosen, on) if one.log_score > least]
+    if found.followed.telling == 1.0:
+        return best
     simpler = (_simpler(screen, one, nothing) for one in best)
     return sorted(simpler, key=lambda one: -one.log_score)
 

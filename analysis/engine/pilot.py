@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analysis.engine.by_ring import Found, Start, by_ring
-from analysis.engine.chain import chained
+from analysis.engine.chain import Chained, chained
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
@@ -28,6 +28,9 @@ PILOTS_FROM = 3
 
 CHAINS, PILOTS = 2, 3
 """So many are tried to begin with where nothing is left out, and where something is."""
+
+BESIDE = 2
+"""A recording that parameters could not be led on to leads with so many of those before it."""
 
 LIFTED, MOST_LIFTED = 40.0, 6
 """What is no farther behind the best of the pilot, as a score, is led in all recordings, at most so
@@ -47,23 +50,23 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         Told of progress.
     """
     system, at = refiner.system, refiner.calibrated.at
-    nothing = _nothing(system, at, tell)
-    if nothing.nuisance is not None:
-        whole = by_ring(refiner, most_causes, tell, Start(nothing.nuisance))
+    chains = _nothing(system, at, tell)
+    if chains and not chains[-1].stuck:
+        whole = by_ring(refiner, most_causes, tell, Start(chains[-1].nuisance))
         if whole.fitted:
             return whole
     tried: list[str] = []
-    for turn in range(PILOTS):
-        # Where parameters could not be led on, something says what is left out.
-        stuck = next((one for one in nothing.stuck if one not in tried), None)
-        record = stuck or _next(system, at, tried, farthest=turn > 0)
-        if record is None:
+    for _ in range(PILOTS):
+        pilot = _pilot(system, at, chains, tried)
+        if pilot is None:
             break
-        tried.append(record)
-        part = Part(system, (record,))
-        found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell)
+        tried.append(pilot.records[0])
+        part = Part(system, pilot.records)
+        beside = at if pilot.nuisance is None else pilot.nuisance
+        start = None if pilot.nuisance is None else Start(part.own(pilot.nuisance))
+        found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start)
         hypotheses = _contending(found.fitted)
-        lifted = _lifted(system, record, hypotheses, at) if hypotheses else []
+        lifted = _lifted(system, pilot.records, hypotheses, beside) if hypotheses else []
         if lifted:
             whole = by_ring(refiner, most_causes, tell, Start(lifted[0].point.nuisance, lifted))
             if whole.fitted:
@@ -72,32 +75,40 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
     return Found((), (), faint=False)
 
 
-class _Nothing(NamedTuple):
-    """Where parameters alone led in all recordings, if they did, or where they could not be led."""
+class _Pilot(NamedTuple):
+    """Recordings that lead the way, and from where; None: from their likeliest parameters."""
 
+    records: Sequence[str]
     nuisance: Array | None
-    stuck: Sequence[str]
 
 
-def _nothing(system: System, at: Array, tell: Tell | None) -> _Nothing:
-    """Parameters alone, led through one recording after the other."""
-    tried: list[str] = []
-    stuck: list[str] = []
+def _pilot(
+    system: System, at: Array, chains: Sequence[Chained], tried: Sequence[str]
+) -> _Pilot | None:
+    """What leads next: where parameters could not be led on, something says what is left out."""
+    for one in chains:
+        if one.stuck and one.stuck not in tried:
+            return _Pilot((one.stuck, *one.led[:BESIDE]), one.nuisance if one.led else None)
+    record = _next(system, at, tried, farthest=len(tried) > 0)
+    return None if record is None else _Pilot((record,), None)
+
+
+def _nothing(system: System, at: Array, tell: Tell | None) -> list[Chained]:
+    """Parameters alone, led through one recording after the other, until that comes through."""
+    found: list[Chained] = []
     for _ in range(CHAINS):
-        record = _next(system, at, tried)
+        record = _next(system, at, [one.led[0] if one.led else one.stuck for one in found])
         if record is None:
             break
-        tried.append(record)
         part = Part(system, (record,))
         led = follow_ring(part, look(part, tell).calibrated.at, everything=True)
         if led.share < 1.0:
-            stuck.append(record)
+            found.append(Chained(at, None, (), record))
             continue
-        found = chained(system, led, record, at)
-        if not found.stuck:
-            return _Nothing(found.nuisance, ())
-        stuck.append(found.stuck)
-    return _Nothing(None, stuck)
+        found.append(chained(system, led, (record,), at))
+        if not found[-1].stuck:
+            break
+    return found
 
 
 def _contending(found: Sequence[Fitted]) -> list[Fitted]:
@@ -109,11 +120,13 @@ def _contending(found: Sequence[Fitted]) -> list[Fitted]:
     return causes[:MOST_LIFTED]
 
 
-def _lifted(system: System, record: str, found: Sequence[Fitted], beside: Array) -> list[Fitted]:
+def _lifted(
+    system: System, records: Sequence[str], found: Sequence[Fitted], beside: Array
+) -> list[Fitted]:
     """Hypotheses of a pilot where they come to in all recordings, but for those that do not."""
     lifted = []
     for one in found:
-        led = chained(system, Followed(one.point.nuisance, one.state), record, beside)
+        led = chained(system, Followed(one.point.nuisance, one.state), records, beside)
         if not led.stuck and led.state is not None:
             point = replace(led.state.point(led.nuisance), ring="as_is")
             lifted.append(replace(one, point=point, state=led.state))

@@ -65,7 +65,7 @@ class Straight:
 def lead(system: Straight, record: str) -> Chained:
     part = Part(system, (record,))
     first = follow_ring(part, np.zeros(len(part.nuisances)), everything=True)
-    return chained(system, first, record, np.zeros(len(system.nuisances)))
+    return chained(system, first, (record,), np.zeros(len(system.nuisances)))
 
 
 @pytest.mark.parametrize("first", NAMES)
