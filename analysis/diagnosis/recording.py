@@ -56,6 +56,10 @@ LEAST_PERIODS = 6
 BASE_SHARE = 1e-4
 """What two good simulators of the same equations differ by, as a share of the variation."""
 
+CLEAR_S = 0.006
+"""A motion starts with a jump: what a sample this near it shows is a matter of its instant, and of
+how two rows of a simulation are joined."""
+
 _DEGREES = np.array([1.0, 1.0, 1.0, *[np.pi / 180.0] * 3])
 
 
@@ -164,8 +168,8 @@ def segments(
         if b - a > 0.05:
             found.append(Segment(a, b, None, LINES_HZ, name=name))
 
-    free(first_s, start, "rest")
-    free(start, steady[0], "onset")
+    free(first_s, start - CLEAR_S, "rest")
+    free(start + CLEAR_S, steady[0], "onset")
     frequency = excitation.frequency_hz
     periods = int((steady[1] - steady[0]) * frequency + 1e-6)
     if periods >= LEAST_PERIODS:

@@ -12,6 +12,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
 
@@ -129,6 +130,18 @@ def all_samples_say(
 def cost_of(led: Followed) -> float:
     """Squared misfit of all samples and of the parameters to their prior."""
     return led.misfit + float(led.nuisance @ led.nuisance)
+
+
+def misfit_at(samples: Samples, nuisance: Array, state: State) -> float:
+    """Squared misfit of all samples at a state, ring and all."""
+    (found,) = samples.residuals([Followed(nuisance, state).point])
+    return float(found @ found)
+
+
+def farthest_first(led: Followed) -> tuple[float, float]:
+    """Least for what was led farthest, and there is closest."""
+    share, cost = led.reached
+    return -share, cost
 
 
 def _parameters_of(system: System, led: Followed) -> Array:

@@ -96,7 +96,8 @@ def faint(
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
     on = followed.point.effects
     for candidate in candidates:
-        small = 1.0 if candidate.grows else SMALL
+        # What is there or not is there as a whole.
+        small = 1.0 if candidate.grows or candidate.fixed else SMALL
         for v, shapes in enumerate(candidate.variants()):
             for k, term in enumerate(candidate.terms):
                 if (candidate.name, term.name) not in same:

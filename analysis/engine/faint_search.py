@@ -73,9 +73,7 @@ def others_beside(refiner: Refiner, led: Followed) -> list[Candidate]:
     on = [refiner.candidates[name] for name in led.names]
     families = {one.family for one in on} - {""}
     return [
-        one
-        for one in refiner.candidates.values()
-        if not one.fixed and one not in on and one.family not in families
+        one for one in refiner.candidates.values() if one not in on and one.family not in families
     ]
 
 
@@ -89,7 +87,9 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     explains
         Share of what is left, as the score counts it, that it must promise to explain.
     """
-    chosen = {one.name: one for one in others_beside(refiner, found.followed)}
+    asked = {name for name, _ in found.terms}
+    beside = others_beside(refiner, found.followed)
+    chosen = {one.name: one for one in beside if one.name in asked}
     state = found.followed.state
     on = Hypothesis() if state is None else state.hypothesis
     screen = Screen(

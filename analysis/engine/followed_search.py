@@ -6,15 +6,18 @@ from dataclasses import replace
 from analysis.engine.all_samples import (
     all_samples_say,
     cost_of,
+    farthest_first,
     led_through,
+    misfit_at,
     nothing_again,
     through,
 )
-from analysis.engine.faint import faint
+from analysis.engine.exchange import plainest, rivals
+from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.kin import kin_of, lead_from, lead_instead, part_of_the_way
+from analysis.engine.kin import kin_left, kin_of, lead_from, lead_instead, part_of_the_way
 from analysis.engine.part import records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
@@ -54,6 +57,9 @@ asked."""
 
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
+
+EXCHANGES = 2
+"""From what rivals have led to, rivals are looked for once more: so often at a time."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -96,6 +102,8 @@ class FollowedSearch:
         self._tried: set[tuple[str, ...]] = set()
         self._begun: list[State] = []
         self._effort = 0.0
+        self._asked: Faint | None = None
+        self._exchanged: set[tuple[str, ...]] = set()
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
     def follow(self, hypotheses: Sequence[Fitted], others: Sequence[Fitted]) -> None:
@@ -118,18 +126,17 @@ class FollowedSearch:
         if nowhere and not self._near:
             return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
-        family = {name: one.family for name, one in self._refiner.candidates.items()}
-        for one in self._fresh(kin_of(self._best, self._led, others, family)):
+        for one in self._fresh(kin_of(self._best, self._led, others, self._refiner.candidates)):
             if self._best.to_end and not self._near:
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead(one.point.nuisance, one.state, near=self._near)
-        self._lead_kin(self._best)
+        self._lead_rivals()
         for _ in range(self._most_causes - 1):
             if not self._one_more():
                 break
             self._one_less(self._best)
-            self._lead_kin(self._best)
+            self._lead_rivals()
 
     @property
     def arrived(self) -> bool:
@@ -140,20 +147,22 @@ class FollowedSearch:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""
         count = len(self._samples.shares)
         self._led = led_through(self._system, self._led)
-        farthest = sorted(self._led, key=_farthest)[:RESTARTS]
-        nothing = nothing_again(self._system, self._nothing, farthest)
+        first = sorted(self._led, key=farthest_first)
+        nothing = nothing_again(self._system, self._nothing, first[:RESTARTS])
         if min(one.misfit for one in (*self._led, nothing)) > ARRIVED * count:
             return None
         return all_samples_say(self._refiner, self._led, nothing, count)
 
     @property
     def _best(self) -> Followed:
-        return min(self._led, key=_farthest, default=self._nothing)
+        return min(self._led, key=farthest_first, default=self._nothing)
 
     def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
         self._begun.append(state)
         system, ahead = self._system, self._best.costs if self._led else None
-        lent = self._lent() if near else None
+        # What nuisances do, about what a new hypothesis is near to.
+        close = self._nothing if self._best.columns is None else self._best
+        lent = close.columns if near else None
         found = follow_ring(
             system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent
         )
@@ -162,20 +171,16 @@ class FollowedSearch:
             self._effort += found.effort
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
-            sharper = sharpened(state, lambda there: -_misfit(self._samples, found.nuisance, there))
+            left = self._samples, found.nuisance
+            sharper = sharpened(state, lambda there: -misfit_at(*left, there))
             if sharper is not state:
                 self._effort += found.effort
                 found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
         self._keep(found)
 
-    def _lent(self) -> Array | None:
-        """What nuisances do, about what a new hypothesis is near to."""
-        best = self._best.columns
-        return self._nothing.columns if best is None else best
-
     def _keep(self, found: Followed) -> None:
         self._effort += found.effort
-        if _farthest(found) > _farthest(self._best):
+        if farthest_first(found) > farthest_first(self._best):
             found = replace(found, columns=None)
         self._led.append(found)
         if self._progress is not None:
@@ -184,12 +189,8 @@ class FollowedSearch:
     def _fresh(self, hypotheses: Sequence[Fitted]) -> list[Fitted]:
         """Those that were not led to the end before, nor lost from about the same start."""
         known = {one.names for one in self._led if one.to_end}
-        return [
-            one
-            for one in hypotheses
-            if one.hypothesis.names not in known
-            and not any(one.state.is_about(start) for start in self._begun)
-        ]
+        fresh = [one for one in hypotheses if one.hypothesis.names not in known]
+        return [one for one in fresh if not any(one.state.is_about(at) for at in self._begun)]
 
     def _is_kin(self, fitted: Fitted) -> bool:
         """Whether it will be led from where another law of its kind came to the end."""
@@ -201,36 +202,45 @@ class FollowedSearch:
 
     def _lead_kin(self, best: Followed) -> None:
         """From where a hypothesis was led to the end, other laws of each of its kinds are led."""
-        candidates = self._refiner.candidates
         if best.borrowed and best is self._best:
             self._led = [through(self._system, one) if one is best else one for one in self._led]
             best = self._best
         if best.state is None or not best.to_end:
             return
-        # What was led there with what it was lent is led once more, from the best's parameters.
-        done = {
-            one.names
-            for one in self._led
-            if one.to_end and not one.borrowed and one.misfit < HOPELESS * best.misfit
-        }
-        done |= self._tried
-        for known in best.names:
-            for name, one in candidates.items():
-                kin = one.family and one.family == candidates[known].family
-                names = tuple(sorted({*best.names, name} - {known}))
-                if not kin or name in best.names or names in done or self._effort > self._most:
-                    continue
-                self._tried.add(names)
-                found = lead_instead(self._samples, best, known, name)
-                if found is not None:
-                    self._keep(found)
+        for known, name, names in kin_left(best, self._led, self._refiner.candidates):
+            if names in self._tried or self._effort > self._most:
+                continue
+            self._tried.add(names)
+            found = lead_instead(self._samples, best, known, name)
+            if found is not None:
+                self._keep(found)
+
+    def _lead_rivals(self) -> None:
+        """Kin of what is on are led, and what promises as much as it does."""
+        candidates = self._refiner.candidates
+        for _ in range(EXCHANGES):
+            self._lead_kin(self._best)
+            plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)
+            if plain is None or plain.names in self._exchanged or self._effort > self._most:
+                return
+            self._exchanged.add(plain.names)
+            # At the end strained parameters tell what they make up for.
+            end = plain if plain.about is None else replace(plain, about=None)
+            for one in rivals(self._system, self._faint(end), candidates, self._led):
+                self._keep(one)
+
+    def _faint(self, about: Followed) -> Faint:
+        """What could be there beside what is on; that of where it was asked last is kept."""
+        if self._asked is None or self._asked.followed is not (about.about or about):
+            self._asked = faint(self._system, about, others_beside(self._refiner, about))
+        return self._asked
 
     def _one_more(self) -> bool:
         """Try one cause more beside the best; whether that leads farther."""
         best, refiner = self._best, self._refiner
         if len(best.names) >= self._most_causes or self._effort > self._most:
             return False
-        found = faint(self._system, best, others_beside(refiner, best))
+        found = self._faint(best)
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
         for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
@@ -254,7 +264,7 @@ class FollowedSearch:
         if self._best is best or (best.to_end and cost_of(self._best) > cost_of(best) - WORTH_IT):
             return False
         # One law was led that far; which of its kind it is, is another question.
-        kind = min(tried, key=lambda one: _farthest(tried[one]))
+        kind = min(tried, key=lambda one: farthest_first(tried[one]))
         for scored in promised[kind][1:]:
             if scored.hypothesis.names not in known and self._effort < self._most:
                 self._lead_like(tried[kind], scored, best.names)
@@ -285,15 +295,3 @@ class FollowedSearch:
             self._keep(found)
         else:
             self._lead(law.nuisance, State.of(scored, self._refiner.candidates), near=False)
-
-
-def _misfit(samples: Samples, nuisance: Array, state: State) -> float:
-    """Squared misfit of all samples at a state, ring and all."""
-    (found,) = samples.residuals([Followed(nuisance, state).point])
-    return float(found @ found)
-
-
-def _farthest(led: Followed) -> tuple[float, float]:
-    """Least for what was led farthest, and there is closest."""
-    share, cost = led.reached
-    return -share, cost

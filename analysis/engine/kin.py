@@ -4,7 +4,7 @@ Where one law of friction explains a recording, another is near: in the same pla
 strong, with the same parameters. How much worse it is, is told within a few steps.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from analysis.engine.hypothesis import Part
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import Array, Candidate, System
+from analysis.engine.way import HOPELESS
 
 STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.12,
              1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0)  # fmt: skip
@@ -62,7 +63,9 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
     return lead_from(samples.system, law, state)
 
 
-def lead_from(system: System, law: Followed, state: State) -> Followed:
+def lead_from(
+    system: System, law: Followed, state: State, nuisance: Array | None = None
+) -> Followed:
     """Lead a hypothesis that is near another from where that one has come to the end.
 
     What nuisances do there is taken to be what they do here, unless they made up for something
@@ -76,16 +79,22 @@ def lead_from(system: System, law: Followed, state: State) -> Followed:
         Led to the end.
     state
         The free numbers to begin with.
+    nuisance
+        And the parameters, in sigmas, shape (p,); None: where the other has come to.
     """
+    start = law.nuisance if nuisance is None else nuisance
     made_up = law.strain > len(law.nuisance)
     return follow_ring(
-        system, law.nuisance, state, everything=True, near=True, ahead=law.costs,
+        system, start, state, everything=True, near=True, ahead=law.costs,
         most=FAR_EFFORT if made_up else EFFORT, lent=None if made_up else law.columns,
     )  # fmt: skip
 
 
 def kin_of(
-    best: Followed, led: Sequence[Followed], others: Sequence[Fitted], family: Mapping[str, str]
+    best: Followed,
+    led: Sequence[Followed],
+    others: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
 ) -> list[Fitted]:
     """Other laws of the things that came as far as the best.
 
@@ -97,19 +106,51 @@ def kin_of(
         All that was led.
     others
         Single causes, the best first.
-    family
-        Candidate -> its family.
+    candidates
+        By name.
     """
     share, cost = best.reached
     far = [one for one in led if one.reached[0] == share and one.reached[1] < cost + BEHIND]
     known = {one.names for one in led}
-    kin = {family[name] for one in far for name in one.names} - {""}
+    kin = {candidates[name].family for one in far for name in one.names} - {""}
     found: dict[tuple[str, ...], Fitted] = {}
     for one in others:
         names = one.hypothesis.names
-        if names not in known and family[names[0]] in kin:
+        if names not in known and candidates[names[0]].family in kin:
             found.setdefault(names, one)
     return list(found.values())
+
+
+def kin_left(
+    best: Followed, led: Sequence[Followed], candidates: Mapping[str, Candidate]
+) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+    """Other laws for those of a hypothesis that have not come to the end.
+
+    Parameters
+    ----------
+    best
+        Which hypothesis.
+    led
+        All that was led. What was led with what it was lent is led once more.
+    candidates
+        By name.
+
+    Yields
+    ------
+    str, str, tuple of str
+        The law that is on, the other, and the names of the hypothesis with that.
+    """
+    done = {
+        one.names
+        for one in led
+        if one.to_end and not one.borrowed and one.misfit < HOPELESS * best.misfit
+    }
+    for known in best.names:
+        for name, one in candidates.items():
+            names = tuple(sorted({*best.names, name} - {known}))
+            kin = one.family and one.family == candidates[known].family
+            if kin and name not in best.names and names not in done:
+                yield known, name, names
 
 
 def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed:

@@ -142,8 +142,9 @@ class Screen:
             right = right[fixed:] - cross @ right[:fixed]
             matrix = matrix[fixed:, fixed:] - cross @ matrix[:fixed, fixed:]
         names = tuple(term.name for term in candidate.terms)
-        lows = np.array([term.low for term in candidate.terms])
-        highs = np.array([term.high for term in candidate.terms])
+        bounds = [limits(candidate, (name,)) for name in names]
+        lows = np.array([low for low, _ in bounds])
+        highs = np.array([high for _, high in bounds])
 
         def gain(chosen: Sequence[int], shared: bool) -> float:
             pick = np.asarray(chosen, dtype=int)
@@ -274,6 +275,8 @@ def grouped(candidate: Candidate, columns: Array, part: Part) -> Array:
 
 
 def limits(candidate: Candidate, group: tuple[str, ...]) -> tuple[float, float]:
-    """Bounds of a group's value."""
+    """Bounds of a group's value; what is there or not has but one."""
     chosen = [term for term in candidate.terms if term.name in group]
+    if candidate.fixed:
+        return chosen[0].step, chosen[0].step
     return max(term.low for term in chosen), min(term.high for term in chosen)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.diagnosis.recording import recording
+from analysis.diagnosis.recording import recording, segments
 from analysis.diagnosis.sight import Sight, seen_by
 from cdpr8.runfolder import Run, load_run, sample_data_folder
 from model import simulate
@@ -80,3 +80,12 @@ def test_fast_tensions_are_averaged_and_say_over_how_long(run: Run) -> None:
     assert block == int(8.0 / (250.0 * interval_s))
     step_s = interval_s / 8.0
     assert found.averaged_s2[0] == pytest.approx((block**2 - 1) / 12.0 * step_s**2, rel=0.05)
+
+
+def test_what_is_sampled_just_when_the_motion_starts_is_not_looked_at(run: Run) -> None:
+    """Two rows of a simulation, 3 ms each, before the jump and after it."""
+    motion = run.start.excitation
+    parts = {one.name: one for one in segments(motion, 0.0, 0.0, motion.duration_s)}
+    assert motion.start_s - parts["rest"].end_s == pytest.approx(0.006)
+    assert parts["onset"].start_s - motion.start_s == pytest.approx(0.006)
+    assert parts["onset"].end_s == parts["steady"].start_s

@@ -1,0 +1,149 @@
+"""Rivals by exchange: what else explains about as well what a cause does.
+
+About a hypothesis, differences tell what each other candidate does. What a cause that is on does is
+given back to what is left to explain, and each other candidate is asked for it, parameters as free
+as they are: no simulation is needed. A cause that parameters had to be bent for is so told from one
+that they need not be.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.engine.all_samples import cost_of
+from analysis.engine.faint import Faint
+from analysis.engine.faint_search import nuisances_of
+from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import Part
+from analysis.engine.kin import lead_from
+from analysis.engine.screen import Scored, Screen, groups
+from analysis.engine.state import State
+from analysis.engine.system import Array, Candidate, System
+
+BEHIND = 15.0
+"""What promises to stay this far behind the cause that it stands for is no rival of it,"""
+
+NEARLY = 0.95
+"""unless it explains this share of what that does: the more there is, the less straight lines are
+to be trusted."""
+
+MOST = 2
+"""So many rivals are led from one hypothesis."""
+
+
+def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Scored]:
+    """Hypotheses with another cause in the place of one that is on, the best first.
+
+    Parameters
+    ----------
+    found
+        About a hypothesis that was led to the end, at its end; of what is not there in `terms`
+        nothing is asked.
+    candidates
+        By name.
+    """
+    state = found.followed.state
+    promised: dict[tuple[str, ...], tuple[float, Scored]] = {}
+    for name in () if state is None else state.hypothesis.names:
+        if candidates[name].fixed:
+            continue
+        screen = _without(found, candidates, name)
+        itself, nothing = _itself(found, candidates, name), screen.null()
+        explains = itself.log_score - nothing.log_score
+        if explains < BEHIND:
+            continue
+        least = itself.log_score - max(BEHIND, (1.0 - NEARLY) * explains)
+        for other in {one for one, _ in found.terms}:
+            one = screen.best_of(other)
+            if one is not None and one.log_score > least:
+                ahead = one.log_score - itself.log_score
+                known = promised.get(one.hypothesis.names)
+                if known is None or ahead > known[0]:
+                    promised[one.hypothesis.names] = (ahead, one)
+    return [one for _, one in sorted(promised.values(), key=lambda both: -both[0])]
+
+
+def rivals(
+    system: System, found: Faint, candidates: Mapping[str, Candidate], led: Sequence[Followed]
+) -> Iterator[Followed]:
+    """Lead what promises about as much as a cause that is on, from where straight lines say.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    found, candidates
+        As for `exchanged`.
+    led
+        All that was led: what came to the end is not led again.
+    """
+    done = {one.names for one in led if one.to_end}
+    fresh = [one for one in exchanged(found, candidates) if one.hypothesis.names not in done]
+    for one in fresh[:MOST]:
+        state = State.of(one, candidates)
+        yield lead_from(system, found.followed, state, nuisances_of(found, one))
+
+
+def plainest(
+    led: Sequence[Followed], most: float, candidates: Mapping[str, Candidate]
+) -> Followed | None:
+    """What has the fewest causes, of what came to the end and costs less than so much.
+
+    None: that has none that could be exchanged.
+    """
+    found = [one for one in led if one.names and one.to_end and cost_of(one) < most]
+    plain = min(found, key=lambda one: (len(one.names), cost_of(one)), default=None)
+    asks = plain is not None and any(not candidates[name].fixed for name in plain.names)
+    return plain if asks else None
+
+
+def _without(
+    found: Faint, candidates: Mapping[str, Candidate], name: str, itself: Array | None = None
+) -> Screen:
+    """What is to be explained where a cause is taken off and what it does is given back.
+
+    Parameters
+    ----------
+    found, candidates
+        As for `exchanged`.
+    name
+        The cause.
+    itself
+        Columns of its terms, to be asked for what it does itself, shape (f, k).
+    """
+    state = found.followed.state
+    assert state is not None
+    magnitudes, values = _magnitudes(state, name)
+    residual = found.problem.residual + found.own[name][:, magnitudes] @ values
+    on = state.hypothesis.without(name)
+    return Screen(
+        replace(found.problem, residual=residual),
+        candidates,
+        found.terms if itself is None else {(name, 0): itself},
+        on=on,
+        done={one: np.zeros(len(residual)) for one in on.names},
+        own={one: columns for one, columns in found.own.items() if one != name},
+        state=state.without(name) if on.parts else None,
+    )
+
+
+def _itself(found: Faint, candidates: Mapping[str, Candidate], name: str) -> Scored:
+    """The cause, asked as the others are."""
+    state = found.followed.state
+    assert state is not None
+    magnitudes, _ = _magnitudes(state, name)
+    terms = [one.name for one in candidates[name].terms]
+    part = state.hypothesis.parts[name]
+    columns = np.zeros((len(found.problem.residual), len(terms)))
+    for group, place in zip(groups(part), magnitudes, strict=True):
+        columns[:, terms.index(group[0])] = found.own[name][:, place]
+    asked = Part(part.terms, part.shared, candidates[name].variants()[0])
+    return _without(found, candidates, name, columns).with_part(name, asked)
+
+
+def _magnitudes(state: State, name: str) -> tuple[list[int], Array]:
+    """Which of a cause's free numbers are magnitudes, and their values, shape (k,)."""
+    places = [state.free[k] for k in state.places(name)]
+    found = [k for k, i in enumerate(places) if state.numbers[i].shape is None]
+    return found, state.values[[places[k] for k in found]]

@@ -1,0 +1,125 @@
+"""What else explains about as well what a cause does."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.engine.all_samples import cost_of
+from analysis.engine.exchange import exchanged, plainest, rivals
+from analysis.engine.faint import faint
+from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.state import State
+from analysis.engine.system import (
+    Array,
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Segment,
+    Shape,
+    Term,
+)
+
+TIMES_S = np.arange(0.0, 1.0, 0.005)
+NOISE = 0.1
+
+
+def tone(hertz: float) -> Array:
+    """Shape (n,)."""
+    return np.asarray(np.sin(2.0 * np.pi * hertz * TIMES_S))
+
+
+LEVEL, THERE, ELSE = tone(1.0), tone(3.0), tone(8.0)
+
+
+def cause(name: str, *shapes: Shape, fixed: bool = False) -> Candidate:
+    term = Term("size", "size", "V", "", -9.0, 9.0, 1.0)
+    return Candidate(name, name, "cell", (term,), shapes, form_share=0.01, fixed=fixed)
+
+
+BENT, TRUE, OTHER = cause("bent"), cause("true"), cause("other")
+WHICH = cause("which", Shape("way", "1", 0.0, 0.0, 1.0, (0.0, 1.0), False, True), fixed=True)
+
+
+class _Straight:
+    """One cause was there; another can be it where a parameter is bent."""
+
+    name = "straight"
+    nuisances = (Nuisance("level", 0.05, "V"),)
+
+    def __init__(self, *candidates: Candidate) -> None:
+        self.candidates = candidates
+        noise = NOISE * np.random.default_rng(5).normal(size=len(TIMES_S))
+        whole = (Segment(0.0, 1.0, None, 20.0),)
+        self.bundles = (
+            Bundle(("y",), ("V",), TIMES_S, (THERE + noise)[:, None], np.eye(1) * NOISE**2, whole),
+        )
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [reduce([self._seen(one)[:, None]]) for one in points]
+
+    def _seen(self, point: Point) -> Array:
+        seen = 0.05 * point.nuisance[0] * LEVEL
+        for name, setting in point.effects.items():
+            size = setting.values.get("size", 0.0)
+            if name == "which":
+                seen = seen + (size > 0.0) * (THERE if setting.shapes["way"] else ELSE)
+            else:
+                seen = seen + size * {"bent": THERE + LEVEL, "true": THERE, "other": ELSE}[name]
+        return np.asarray(seen)
+
+    @property
+    def bent(self) -> Followed:
+        """Led to the end: what is on explains, with the parameter at twenty sigmas."""
+        known = {one.name: one for one in self.candidates}
+        state = State.at(Hypothesis({"bent": Part(("size",))}), {("bent", "size"): 1.0}, known)
+        cost = float(len(TIMES_S)) + 400.0
+        return Followed(np.array([-20.0]), state, misfit=cost - 400.0, costs={1.0: cost})
+
+
+def test_what_needs_no_parameter_bent_is_promised_in_the_place_of_what_does() -> None:
+    system = _Straight(BENT, TRUE, OTHER)
+    known = {one.name: one for one in system.candidates}
+    found = faint(system, system.bent, [TRUE, OTHER])
+    (one,) = exchanged(found, known)
+    assert one.hypothesis.names == ("true",)
+    assert one.values["true", "size"] == pytest.approx(1.0, abs=0.05)
+
+
+def test_it_is_led_from_there_and_costs_as_much_less_as_the_parameter_did() -> None:
+    system = _Straight(BENT, TRUE, OTHER)
+    known = {one.name: one for one in system.candidates}
+    found = faint(system, system.bent, [TRUE, OTHER])
+    (led,) = rivals(system, found, known, [system.bent])
+    assert led.names == ("true",)
+    assert cost_of(led) < cost_of(system.bent) - 350.0
+    assert list(rivals(system, found, known, [system.bent, led])) == [], "it was led"
+
+
+def test_what_is_there_or_not_is_asked_as_a_whole_in_each_of_its_ways() -> None:
+    system = _Straight(BENT, WHICH)
+    known = {one.name: one for one in system.candidates}
+    found = faint(system, system.bent, [WHICH])
+    (one,) = exchanged(found, known)
+    assert one.hypothesis.parts["which"].shapes == {"way": 1.0}
+    assert one.values["which", "size"] == 1.0
+
+
+def test_of_what_comes_as_far_the_fewest_causes_are_asked() -> None:
+    system = _Straight(BENT, TRUE, WHICH)
+    known = {one.name: one for one in system.candidates}
+
+    def led(cost: float, *names: str) -> Followed:
+        parts = {name: Part(("size",)) for name in names}
+        values = {(name, "size"): 1.0 for name in names}
+        state = State.at(Hypothesis(parts), values, known)
+        return Followed(np.zeros(1), state, misfit=cost, costs={1.0: cost})
+
+    both, one, far = led(100.0, "bent", "true"), led(120.0, "true"), led(500.0, "bent")
+    assert plainest([both, one, far], 130.0, known) is one
+    assert plainest([both, led(120.0, "which")], 130.0, known) is None, "nothing to exchange"
