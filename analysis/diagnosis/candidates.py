@@ -105,7 +105,7 @@ SHARPEST = 3.0
 
 SATURATION_STEP_N = 0.3
 
-GROWING = ("camera_exposure",)
+GROWING = ("camera_exposure", "cable_sag")
 """What it does goes with the square of its magnitude."""
 
 

@@ -16,6 +16,7 @@ from analysis.challenge.plant.record import Measured, Sensing, measure
 from analysis.challenge.plant.sensors import Faults
 from analysis.challenge.truth import drawn_offset
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
+from model import ActiveEffect
 from model import simulate as simulate_model
 
 SHORT = Excitation(frequency_hz=2.0, rest_s=0.3, motion_s=2.0, ramp_s=0.4)
@@ -130,6 +131,39 @@ def test_every_effect_shows_in_the_record(sound: Case, usual: Measured, name: st
         assert pose == 0.0
         others = np.delete(changed.tension_n - usual.tension_n, (0, 2), axis=1)
         assert np.abs(others).max() == 0.0
+
+
+@pytest.mark.parametrize("name", [k for k, one in sorted(catalogue().items()) if one.straight])
+def test_what_is_said_to_act_in_proportion_does(sound: Case, usual: Measured, name: str) -> None:
+    effect = catalogue()[name]
+    details = dict(effect.draw(np.random.default_rng(4)))
+    cables = () if effect.cables == "none" else (1, 3)
+    run, changes = sound.runs[0], []
+    for share in (0.005, 0.01):
+        concealed = Concealed(effect, share * effect.typical, cables, details)
+        made = sound.with_concealed(concealed).made(run, noise=False, step_s=1e-3)
+        change = np.concatenate([(made.tension_n - usual.tension_n).ravel(), made.pose.ravel()])
+        change[usual.tension_n.size :] -= usual.pose.ravel()
+        changes.append(change)
+    once, twice = changes
+    # A ring is out of phase soon; a square would be off by half.
+    assert np.linalg.norm(twice - 2.0 * once) < 0.25 * np.linalg.norm(twice)
+
+
+def test_a_heavier_cable_is_the_model_s(rig: Rig) -> None:
+    """The share is of the weight: what it sags by goes with its square."""
+    effect = catalogue()["cable_sag"]
+    concealed = Concealed(effect, 3.0, tuple(range(1, 9)), {})
+    course = simulate(rig, SHORT, hidden=concealed.parts(Machine.from_rig(rig)).hidden)
+    heavy = (ActiveEffect("cable_sag", {"weight_share": 3.0}),)
+    model, bare = simulate_model(rig, SHORT, effects=heavy), simulate_model(rig, SHORT)
+    found = np.stack(
+        [np.interp(model.t_s, course.t_s, course.tension_n[:, i]) for i in range(8)], axis=1
+    )
+    # Later a ring is out of phase: a parabola is not quite a catenary.
+    begun = model.t_s < SHORT.start_s + 0.15
+    off, change = (model.tension_n - one for one in (found, bare.tension_n))
+    assert np.abs(off[begun]).max() < 0.05 * np.abs(change[begun]).max()
 
 
 @pytest.mark.parametrize(
