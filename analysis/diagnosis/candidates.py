@@ -60,7 +60,7 @@ POLICIES: dict[str, Policy] = {
         | BRISTLE_LOSS
     ),
     "umbilical": Policy(shapes={"loss_s": (5e-3,)}),
-    "pulley_inertia": Policy(form_share=LINEAR),
+    "pulley_inertia": Policy(shapes={"grip_s": (2e-3,)}, form_share=LINEAR),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
     "centre_of_mass": Policy(steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}),
     "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),

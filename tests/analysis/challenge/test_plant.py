@@ -15,6 +15,7 @@ from analysis.challenge.plant.pulley import straight, wrapped
 from analysis.challenge.plant.record import Measured, Sensing, measure
 from analysis.challenge.plant.sensors import Faults
 from analysis.challenge.truth import drawn_offset
+from analysis.diagnosis.candidates import candidates
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
 from model import ActiveEffect
 from model import simulate as simulate_model
@@ -182,6 +183,27 @@ def test_what_dissipates_lets_a_free_platform_come_to_rest(rig: Rig, name: str) 
         last = course.t_s > course.t_s[-1] - 0.5
         swings.append(np.ptp(course.pose[last, 4]))
     assert swings[1] < 0.97 * swings[0]
+
+
+def test_what_a_wheel_loses_to_its_grip_is_within_what_is_fitted(rig: Rig) -> None:
+    effect = catalogue()["pulley_inertia"]
+    excitation = SHORT.model_copy(update={"ramp_s": 0.0, "motion_s": 0.625, "rest_s": 3.0})
+    hidden = Concealed(effect, 0.2, tuple(range(1, 9)), {}).parts(Machine.from_rig(rig)).hidden
+    course = simulate(rig, excitation, hidden=hidden)
+    (grip,) = candidates(["pulley_inertia"], [(0.0, 1.0)], 16.0)[0].shapes
+    assert grip.name == "grip_s"
+
+    def swing(t_s: np.ndarray, pitch: np.ndarray) -> float:
+        return float(np.ptp(pitch[t_s > t_s[-1] - 0.5]))
+
+    firm, loose = (
+        simulate_model(rig, excitation, effects=(
+            ActiveEffect("pulley_inertia", {"equivalent_kg": 0.2, "grip_s": one}),
+        ))
+        for one in (grip.low, grip.default)
+    )  # fmt: skip
+    lossy, plant = swing(loose.t_s, loose.pose[:, 4]), swing(course.t_s, course.pose[:, 4])
+    assert lossy < plant < swing(firm.t_s, firm.pose[:, 4])
 
 
 def test_a_wheel_of_no_radius_is_a_point_and_a_small_one_pays_out_to_first_order() -> None:
