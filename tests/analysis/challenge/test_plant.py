@@ -13,12 +13,14 @@ from analysis.challenge.plant.machine import Machine, Offset
 from analysis.challenge.plant.plant import STEP_S, Course, simulate
 from analysis.challenge.plant.pulley import straight, wrapped
 from analysis.challenge.plant.record import Measured, Sensing, measure
-from analysis.challenge.plant.sensors import Faults
+from analysis.challenge.plant.sensors import KNEE_N, CellFault, Faults, read_cells
 from analysis.challenge.truth import drawn_offset
-from analysis.diagnosis.candidates import candidates
+from analysis.diagnosis.candidates import candidates, library_values
+from analysis.engine.system import Setting
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
 from model import ActiveEffect
 from model import simulate as simulate_model
+from model.effects import library
 
 SHORT = Excitation(frequency_hz=2.0, rest_s=0.3, motion_s=2.0, ramp_s=0.4)
 
@@ -183,6 +185,25 @@ def test_what_dissipates_lets_a_free_platform_come_to_rest(rig: Rig, name: str) 
         last = course.t_s > course.t_s[-1] - 0.5
         swings.append(np.ptp(course.pose[last, 4]))
     assert swings[1] < 0.97 * swings[0]
+
+
+def test_a_cell_that_bends_into_its_limit_is_among_what_is_fitted() -> None:
+    """Where little of a tension's range is cut off, all of it is in the bend."""
+    t_s = np.linspace(0.0, 1.0, 1001)
+    tension = np.tile((23.0 + 0.3 * np.sin(6.0 * t_s))[:, None], (1, 8))
+    limits, peaks = np.zeros(8), [23.3] * 8
+    limits[3] = 23.2
+    seen = read_cells(t_s, tension, CellFault(limit_n=limits))
+    share = KNEE_N / 0.1
+    setting = Setting({"clipped_n@4": 0.1}, {"knee_share": share})
+    values = library_values("cell_saturation", setting, peaks, 0, 16.0)
+    assert values is not None
+    law = library()["cell_saturation"].measure
+    assert law is not None
+    found = law(t_s, tension, **{name: np.array(one) for name, one in values.items()})
+    assert found == pytest.approx(seen, abs=1e-9)
+    (shape,) = candidates(["cell_saturation"], [(0.0, 1.0)], 16.0)[0].shapes
+    assert shape.low < share < shape.high
 
 
 def test_what_a_wheel_loses_to_its_grip_is_within_what_is_fitted(rig: Rig) -> None:
