@@ -60,7 +60,7 @@ POLICIES: dict[str, Policy] = {
         | BRISTLE_LOSS
     ),
     "umbilical": Policy(shapes={"loss_s": (5e-3,)}),
-    "pulley_inertia": Policy(form_share=LINEAR),
+    "pulley_inertia": Policy(shapes={"grip_s": (2e-3,)}, form_share=LINEAR),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
     "centre_of_mass": Policy(steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}),
     "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),
@@ -105,7 +105,7 @@ SHARPEST = 3.0
 
 SATURATION_STEP_N = 0.3
 
-GROWING = ("camera_exposure",)
+GROWING = ("camera_exposure", "cable_sag")
 """What it does goes with the square of its magnitude."""
 
 
@@ -217,7 +217,9 @@ def _saturation(effect: Effect) -> Candidate:
         Term(f"clipped_n@{cable}", "clipped_n", "N", str(cable), 0.0, 30.0, SATURATION_STEP_N)
         for cable in CABLE_NUMBERS
     )
-    return Candidate(effect.name, effect.title, effect.acts.side, terms, (), 0.1,
+    # Over how much of what is cut off it bends: what cuts off nothing then does nothing.
+    knee = Shape("knee_share", "1", 0.5, 0.02, 5.0, (0.1, 1.0))
+    return Candidate(effect.name, effect.title, effect.acts.side, terms, (knee,), 0.1,
                      shareable=False, grows=True)  # fmt: skip
 
 
@@ -269,13 +271,10 @@ def library_values(
         on = setting.values.get("swapped", 0.0) > 0.0
         return {"swapped": tuple(float(on and c in pair) for c in CABLE_NUMBERS)}
     if name == "cell_saturation":
-        clipped = [setting.values.get(f"clipped_n@{c}", 0.0) for c in CABLE_NUMBERS]
-        return {
-            "limit_n": tuple(
-                max(peak - clip, 1e-3) if clip > 0.0 else 0.0
-                for peak, clip in zip(peaks_n, clipped, strict=True)
-            )
-        }
+        clips = [setting.values.get(f"clipped_n@{c}", 0.0) for c in CABLE_NUMBERS]
+        knee, pairs = setting.shapes.get("knee_share", 0.0), zip(peaks_n, clips, strict=True)
+        limits = [max(peak - clip, 1e-3) if clip > 0.0 else 0.0 for peak, clip in pairs]
+        return {"limit_n": tuple(limits), "knee_n": tuple(knee * clip for clip in clips)}
     if name == "frames_dropped":
         moment = setting.shapes.get("moment", 0.0)
         if setting.values.get("frames", 0.0) <= 0.0 or int(moment // 1000.0) != record:

@@ -6,15 +6,17 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
-from analysis.engine.faint import FORMS
+from analysis.engine.faint import FORMS, UNEXPLAINED
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.judge import NOISE
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
+from analysis.engine.whiten import noise_leaves
 
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
@@ -92,7 +94,8 @@ def all_samples_say(
     """Hypotheses with the evidence of all samples, the best first.
 
     What the best explains it explains but for its error of form, and so does every other: how
-    large that is, is not known, but no larger than what the best leaves may hide.
+    large that is, is not known, but no larger than what the best leaves may hide. And of what
+    nothing explains, and noise does not allow, a share may lie where causes are looked for.
 
     Parameters
     ----------
@@ -109,13 +112,16 @@ def all_samples_say(
     form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
     explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
     hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
+    allowed = count * max(noise_leaves(refiner.system.bundles), NOISE)
+    unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
     fitted = []
     closest = {one.names: one for one in sorted(led, key=cost_of, reverse=True)}
     for one in (*closest.values(), nothing):
         state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
         logs = []
         for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
-            noise = 1.0 + min((size * form) ** 2 * explained, hidden) / FORMS
+            off = min((size * form) ** 2 * explained, hidden) + unexplained
+            noise = 1.0 + off / FORMS
             unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
             logs.append(np.log(weight) - unlikely - 0.5 * (one.misfit - best.misfit) / noise)
         # No error of form makes parameters likelier that are far from what is known of them.

@@ -131,6 +131,7 @@ class FollowedSearch:
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead(one.point.nuisance, one.state, near=self._near)
+        self._one_less(self._best)
         self._lead_rivals()
         for _ in range(self._most_causes - 1):
             if not self._one_more():

@@ -21,8 +21,8 @@ def pull(
     direction_z: Any,
 ) -> Any:
     """Delta T of T = T_e + k [s(T) - s(T_0)], s = (w L)^2 L / (24 T^2), by two Newton steps."""
-    weight = line_density * gravity * length
-    across = weight_share * weight * weight * (1.0 - direction_z * direction_z)
+    weight = weight_share * line_density * gravity * length
+    across = weight * weight * (1.0 - direction_z * direction_z)
     sag = stiffness * across * length / 24.0
     floor = FLOOR * pretension
     taut = np.sqrt(elastic * elastic + floor * floor)
@@ -37,7 +37,7 @@ EFFECT = Effect(
     name="cable_sag",
     title="sag of the cable",
     acts=Acts.CABLE,
-    equation="T = T_e + k [s(T) - s(T_0)], s = a (rho g L cos beta)^2 L/(24 T^2)",
+    equation="T = T_e + k [s(T) - s(T_0)], s = (a rho g L cos beta)^2 L/(24 T^2)",
     source="Irvine, Cable Structures (1981), Section 2; Ernst, Bauingenieur 40 (1965) 52",
     signature="softening at low tension, about T^-3: even harmonics in phase",
     parameters=(
@@ -47,7 +47,7 @@ EFFECT = Effect(
             1.0,
             0.0,
             4.0,
-            "a: 1 for the rig file's line density",
+            "a: weight over that of the rig file's line density",
             magnitude=True,
         ),
     ),

@@ -226,6 +226,12 @@ def test_slack_and_sag_are_even_and_in_phase() -> None:
         assert abs(answer.quadrature[1]) < 1e-6, name
 
 
+def test_sag_goes_with_the_square_of_the_weight() -> None:
+    effect = library()["cable_sag"]
+    light, heavy = (cable_response(effect, {"weight_share": one}) for one in (0.1, 0.2))
+    assert heavy.size[1] == pytest.approx(4.0 * light.size[1], rel=1e-2)
+
+
 def test_creep_drifts_one_way() -> None:
     effect = library()["cable_creep"]
     early = cable_response(effect, cycles=2, frequency_hz=1.0)

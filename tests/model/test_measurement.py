@@ -24,10 +24,12 @@ def pose_at(stamp_s: np.ndarray) -> np.ndarray:
 
 def cell(name: str, value: float, cable: int = 3) -> np.ndarray:
     """What the cells report with the effect at one cable."""
-    (parameter,) = library()[name].parameters
+    effect = library()[name]
+    (magnitude,) = effect.magnitudes
     values = np.zeros(8)
     values[cable - 1] = value
-    seen = library()[name].measure(TIME_S, TENSION, **{parameter.name: values})
+    given = {one.name: one.default for one in effect.parameters} | {magnitude: values}
+    seen = effect.measure(TIME_S, TENSION, **given)
     others = np.delete(np.arange(8), cable - 1)
     assert np.array_equal(seen[:, others], TENSION[:, others]), "other channels stay clean"
     return seen[:, cable - 1]

@@ -182,9 +182,7 @@ CABLE_EFFECTS = (
     ),
     Effect("cable_modes", "plant", "coupling", "1", 0.8, 2.0, _plain("MODES"), "all"),
     Effect("cable_end_forcing", "plant", "forcing_share", "1", 0.8, 2.0, _plain("SHAKEN"), "all"),
-    Effect(
-        "cable_sag", "plant", "weight_share", "1", 1.0, 4.0, _plain("SAG"), "all", straight=True
-    ),
+    Effect("cable_sag", "plant", "weight_share", "1", 1.0, 4.0, _plain("SAG"), "all"),
     Effect(
         "cable_structural",
         "plant",

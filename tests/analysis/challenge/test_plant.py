@@ -13,10 +13,14 @@ from analysis.challenge.plant.machine import Machine, Offset
 from analysis.challenge.plant.plant import STEP_S, Course, simulate
 from analysis.challenge.plant.pulley import straight, wrapped
 from analysis.challenge.plant.record import Measured, Sensing, measure
-from analysis.challenge.plant.sensors import Faults
+from analysis.challenge.plant.sensors import KNEE_N, CellFault, Faults, read_cells
 from analysis.challenge.truth import drawn_offset
+from analysis.diagnosis.candidates import candidates, library_values
+from analysis.engine.system import Setting
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
+from model import ActiveEffect
 from model import simulate as simulate_model
+from model.effects import library
 
 SHORT = Excitation(frequency_hz=2.0, rest_s=0.3, motion_s=2.0, ramp_s=0.4)
 
@@ -132,6 +136,39 @@ def test_every_effect_shows_in_the_record(sound: Case, usual: Measured, name: st
         assert np.abs(others).max() == 0.0
 
 
+@pytest.mark.parametrize("name", [k for k, one in sorted(catalogue().items()) if one.straight])
+def test_what_is_said_to_act_in_proportion_does(sound: Case, usual: Measured, name: str) -> None:
+    effect = catalogue()[name]
+    details = dict(effect.draw(np.random.default_rng(4)))
+    cables = () if effect.cables == "none" else (1, 3)
+    run, changes = sound.runs[0], []
+    for share in (0.005, 0.01):
+        concealed = Concealed(effect, share * effect.typical, cables, details)
+        made = sound.with_concealed(concealed).made(run, noise=False, step_s=1e-3)
+        change = np.concatenate([(made.tension_n - usual.tension_n).ravel(), made.pose.ravel()])
+        change[usual.tension_n.size :] -= usual.pose.ravel()
+        changes.append(change)
+    once, twice = changes
+    # A ring is out of phase soon; a square would be off by half.
+    assert np.linalg.norm(twice - 2.0 * once) < 0.25 * np.linalg.norm(twice)
+
+
+def test_a_heavier_cable_is_the_model_s(rig: Rig) -> None:
+    """The share is of the weight: what it sags by goes with its square."""
+    effect = catalogue()["cable_sag"]
+    concealed = Concealed(effect, 3.0, tuple(range(1, 9)), {})
+    course = simulate(rig, SHORT, hidden=concealed.parts(Machine.from_rig(rig)).hidden)
+    heavy = (ActiveEffect("cable_sag", {"weight_share": 3.0}),)
+    model, bare = simulate_model(rig, SHORT, effects=heavy), simulate_model(rig, SHORT)
+    found = np.stack(
+        [np.interp(model.t_s, course.t_s, course.tension_n[:, i]) for i in range(8)], axis=1
+    )
+    # Later a ring is out of phase: a parabola is not quite a catenary.
+    begun = model.t_s < SHORT.start_s + 0.15
+    off, change = (model.tension_n - one for one in (found, bare.tension_n))
+    assert np.abs(off[begun]).max() < 0.05 * np.abs(change[begun]).max()
+
+
 @pytest.mark.parametrize(
     "name", ["cable_viscous", "cable_relaxation", "cable_hysteresis", "cable_structural",
              "pulley_coulomb", "platform_damping", "air_drag"],
@@ -148,6 +185,46 @@ def test_what_dissipates_lets_a_free_platform_come_to_rest(rig: Rig, name: str) 
         last = course.t_s > course.t_s[-1] - 0.5
         swings.append(np.ptp(course.pose[last, 4]))
     assert swings[1] < 0.97 * swings[0]
+
+
+def test_a_cell_that_bends_into_its_limit_is_among_what_is_fitted() -> None:
+    """Where little of a tension's range is cut off, all of it is in the bend."""
+    t_s = np.linspace(0.0, 1.0, 1001)
+    tension = np.tile((23.0 + 0.3 * np.sin(6.0 * t_s))[:, None], (1, 8))
+    limits, peaks = np.zeros(8), [23.3] * 8
+    limits[3] = 23.2
+    seen = read_cells(t_s, tension, CellFault(limit_n=limits))
+    share = KNEE_N / 0.1
+    setting = Setting({"clipped_n@4": 0.1}, {"knee_share": share})
+    values = library_values("cell_saturation", setting, peaks, 0, 16.0)
+    assert values is not None
+    law = library()["cell_saturation"].measure
+    assert law is not None
+    found = law(t_s, tension, **{name: np.array(one) for name, one in values.items()})
+    assert found == pytest.approx(seen, abs=1e-9)
+    (shape,) = candidates(["cell_saturation"], [(0.0, 1.0)], 16.0)[0].shapes
+    assert shape.low < share < shape.high
+
+
+def test_what_a_wheel_loses_to_its_grip_is_within_what_is_fitted(rig: Rig) -> None:
+    effect = catalogue()["pulley_inertia"]
+    excitation = SHORT.model_copy(update={"ramp_s": 0.0, "motion_s": 0.625, "rest_s": 3.0})
+    hidden = Concealed(effect, 0.2, tuple(range(1, 9)), {}).parts(Machine.from_rig(rig)).hidden
+    course = simulate(rig, excitation, hidden=hidden)
+    (grip,) = candidates(["pulley_inertia"], [(0.0, 1.0)], 16.0)[0].shapes
+    assert grip.name == "grip_s"
+
+    def swing(t_s: np.ndarray, pitch: np.ndarray) -> float:
+        return float(np.ptp(pitch[t_s > t_s[-1] - 0.5]))
+
+    firm, loose = (
+        simulate_model(rig, excitation, effects=(
+            ActiveEffect("pulley_inertia", {"equivalent_kg": 0.2, "grip_s": one}),
+        ))
+        for one in (grip.low, grip.default)
+    )  # fmt: skip
+    lossy, plant = swing(loose.t_s, loose.pose[:, 4]), swing(course.t_s, course.pose[:, 4])
+    assert lossy < plant < swing(firm.t_s, firm.pose[:, 4])
 
 
 def test_a_wheel_of_no_radius_is_a_point_and_a_small_one_pays_out_to_first_order() -> None:

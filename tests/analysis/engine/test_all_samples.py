@@ -1,0 +1,52 @@
+"""What all samples say of hypotheses, and which are led to say it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.engine.all_samples import all_samples_say
+from analysis.engine.followed import Followed
+from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.look import look
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.state import State
+from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
+
+DAMPED = LetGo(ring(0.0, 0.2, 0.0, 0.0))
+COUNT = 1000
+BETTER = 200.0
+"""By how much less damping leaves than parameters alone, in squared misfit."""
+
+
+@pytest.fixture(scope="module")
+def refiner() -> Refiner:
+    found = look(DAMPED)
+    return Refiner(DAMPED, found.lens, found.data, found.calibrated)
+
+
+@pytest.mark.parametrize(("left", "sure"), [(1.0, True), (1.05, True), (2.0, False)])
+def test_what_nothing_explains_makes_a_cause_that_explains_little_of_it_less_sure(
+    refiner: Refiner, left: float, sure: bool
+) -> None:
+    law = Followed(np.zeros(1), state_of(DAMPING, 0.01), misfit=left * COUNT)
+    nothing = Followed(np.zeros(1), None, misfit=law.misfit + BETTER)
+    first, second = all_samples_say(refiner, [law], nothing, COUNT)
+    ahead = first.log_score - second.log_score
+    assert bool(first.hypothesis.parts)
+    assert (ahead > 20.0) == sure
+
+
+def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refiner) -> None:
+    both = Hypothesis({"damping": Part(("rate",)), "step": Part(("high",), False, {"moment": 9.0})})
+    values = {("damping", "rate"): 0.19, ("step", "high"): 0.002}
+    state = State.at(both, values, {one.name: one for one in (DAMPING, STEP)})
+    pair = refiner.at(state, np.zeros(1))
+    nothing = replace(follow_ring(DAMPED, np.zeros(1), everything=True), columns=None)
+    search = FollowedSearch(refiner, nothing, 2)
+    search.follow([pair], [])
+    found = search.fitted()
+    assert found is not None
+    assert found[0].hypothesis.names == ("damping",)
