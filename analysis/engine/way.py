@@ -22,6 +22,10 @@ REACH, NARROWEST = 4.0, 0.001
 """Where more than this is left of a sample in the next window, as where a motion begins, a nearer
 one is led through first, down to this share of the time."""
 
+AT_ONCE = 1.5
+"""A longer stretch is gone over at once only where no more than this is left of a sample: a faint
+ring half a turn out of phase leaves little more than noise, and so does a wrong turn after it."""
+
 LOST = 300.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
 
@@ -124,7 +128,7 @@ class Way:
             whole = self.here
             if self._seen < 1.0:
                 (whole,) = self._samples.residuals([self.at.point])
-            farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < REACH)
+            farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < AT_ONCE)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
             self.here, self._seen, self._columns, self._last = whole, share, None, None

@@ -11,13 +11,16 @@ ROUNDING_M_PER_S = 1e-4
 ROUNDING = 1e-3
 """Width over which sgn z is rounded, as a share of the yield elongation."""
 
-EARLY, LATE = 1.0 / 3.0, 5.0 / 3.0
-"""Yield elongations of the first and the last third of the strands, over that of the second."""
+YIELDS = (1 / 6, 3 / 6, 5 / 6, 7 / 6, 9 / 6, 11 / 6)
+"""Yield elongations of each sixth of the strands, over their average: evenly between 0 and twice
+that. Small motions are felt by the first to yield alone: three thirds would miss them."""
 
 
-def pull(loop_share: Any, first: Any, second: Any, third: Any, stiffness: Any) -> Any:
-    """Add alpha k (z_1 + z_2 + z_3) / 3."""
-    return loop_share * stiffness * (first + second + third) / 3.0
+def pull(
+    loop_share: Any, z_1: Any, z_2: Any, z_3: Any, z_4: Any, z_5: Any, z_6: Any, stiffness: Any
+) -> Any:
+    """Add alpha k (z_1 + ... + z_6) / 6."""
+    return loop_share * stiffness * (z_1 + z_2 + z_3 + z_4 + z_5 + z_6) / 6.0
 
 
 def _held(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
@@ -34,13 +37,23 @@ def _held(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
 
 
 def rates(
-    yield_m: Any, first: Any, second: Any, third: Any, elongation_rate: Any
-) -> tuple[Any, Any, Any]:
-    """Of each third, by its own yield elongation."""
+    yield_m: Any,
+    z_1: Any,
+    z_2: Any,
+    z_3: Any,
+    z_4: Any,
+    z_5: Any,
+    z_6: Any,
+    elongation_rate: Any,
+) -> tuple[Any, ...]:
+    """Of each sixth, by its own yield elongation."""
     return (
-        _held(EARLY * yield_m, first, elongation_rate),
-        _held(yield_m, second, elongation_rate),
-        _held(LATE * yield_m, third, elongation_rate),
+        _held(YIELDS[0] * yield_m, z_1, elongation_rate),
+        _held(YIELDS[1] * yield_m, z_2, elongation_rate),
+        _held(YIELDS[2] * yield_m, z_3, elongation_rate),
+        _held(YIELDS[3] * yield_m, z_4, elongation_rate),
+        _held(YIELDS[4] * yield_m, z_5, elongation_rate),
+        _held(YIELDS[5] * yield_m, z_6, elongation_rate),
     )
 
 
@@ -48,8 +61,8 @@ EFFECT = Effect(
     name="cable_hysteresis",
     title="hysteresis of the cable",
     acts=Acts.CABLE,
-    equation="T += a k (z_1 + z_2 + z_3)/3, z' = x' - (|x'| sgn z + x') p/(1 + p), "
-    "p = (z/y)^8, x = Delta L, y = x_y/3, x_y, 5 x_y/3",
+    equation="T += a k (z_1 + ... + z_6)/6, z' = x' - (|x'| sgn z + x') p/(1 + p), "
+    "p = (z/y)^8, x = Delta L, y = x_y/6, 3 x_y/6, ..., 11 x_y/6",
     source="strands that yield between 0 and 2 x_y: Iwan, J. Appl. Mech. 33 (1966) 893; each by "
     "Wen, J. Eng. Mech. Div. ASCE 102 (1976) 249, n = 8",
     signature="weak odd harmonics, a loop with sharp tips, rate-independent; tan delta and "
@@ -59,9 +72,12 @@ EFFECT = Effect(
         Parameter("yield_m", "m", 1e-3, 2e-4, 2e-2, "x_y, on average"),
     ),
     states=(
-        State("first", "m", "z_1, what the strands hold that yield first"),
-        State("second", "m", "z_2, those after them"),
-        State("third", "m", "z_3, those that yield last"),
+        State("z_1", "m", "what the sixth of the strands holds that yields first"),
+        State("z_2", "m", "the next sixth"),
+        State("z_3", "m", "the next"),
+        State("z_4", "m", "the next"),
+        State("z_5", "m", "the next"),
+        State("z_6", "m", "the sixth that yields last"),
     ),
     pull=pull,
     rates=rates,
