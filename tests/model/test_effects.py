@@ -212,6 +212,19 @@ def test_bouc_wen_is_rate_independent_with_a_loop() -> None:
     assert slow.share(2) < 1e-3 < slow.share(3) < 0.4
 
 
+@pytest.mark.parametrize("share", [0.25, 0.5, 1.0, 1.5])
+def test_strands_that_yield_evenly_lose_what_many_of_them_would(share: float) -> None:
+    # Iwan's distribution: a slider that yields at s loses 4 k s (A - s) a cycle, s even to 2 x_y.
+    alpha, stiffness, yield_m = 0.1, 1410.0, 5e-3
+    amplitude = share * yield_m
+    wanted = alpha * stiffness * amplitude**2 / (3.0 * np.pi * yield_m)
+    effect = library()["cable_hysteresis"]
+    answer = cable_response(
+        effect, {"loop_share": alpha, "yield_m": yield_m}, amplitude_m=amplitude
+    )
+    assert wanted / 2.0 < answer.quadrature[1] < 2.0 * wanted
+
+
 def test_stiffening_is_a_third_harmonic_in_phase() -> None:
     answer = cable_response(library()["cable_stiffening"])
     assert answer.share(3) == pytest.approx(1 / 3)

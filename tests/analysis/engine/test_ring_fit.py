@@ -104,6 +104,13 @@ def test_a_ring_a_thousand_times_the_noise_is_followed_from_its_first_cycle_on()
     assert found.left == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.parametrize("noise", [0.6, 0.8])
+def test_a_faint_ring_two_turns_out_of_phase_is_followed_too(noise: float) -> None:
+    found = follow_ring(LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise), np.zeros(1))
+    assert found.left == pytest.approx(1.0, abs=0.1)
+    assert found.nuisance[0] == pytest.approx(2.0, abs=0.05)
+
+
 def test_no_more_is_simulated_than_is_looked_at() -> None:
     asked: list[float] = []
 
