@@ -17,7 +17,15 @@ from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import nuisances_of, one_more, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.kin import kin_left, kin_of, lead_from, lead_instead, part_of_the_way
+from analysis.engine.judge import NOISE
+from analysis.engine.kin import (
+    kin_alike,
+    kin_left,
+    kin_of,
+    lead_from,
+    lead_instead,
+    part_of_the_way,
+)
 from analysis.engine.part import records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
@@ -131,6 +139,7 @@ class FollowedSearch:
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead(one.point.nuisance, one.state, near=self._near)
+        self._lead_alike(others)
         self._one_less(self._best)
         self._lead_rivals()
         for _ in range(self._most_causes - 1):
@@ -215,6 +224,18 @@ class FollowedSearch:
             found = lead_instead(self._samples, best, known, name)
             if found is not None:
                 self._keep(found)
+
+    def _lead_alike(self, others: Sequence[Fitted]) -> None:
+        """Laws of the best's kind in all places alike, where it leaves more than noise."""
+        best = self._best
+        if self._near or best.left < NOISE:
+            return
+        for one in kin_alike(best, others, self._refiner.candidates):
+            if self._effort < self._most:
+                start, state = one.point.nuisance, one.state.alike()
+                self._keep(
+                    follow_ring(self._system, start, state, everything=True, ahead=best.costs)
+                )
 
     def _lead_rivals(self) -> None:
         """Kin of what is on are led, and what promises as much as it does."""

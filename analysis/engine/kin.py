@@ -121,6 +121,36 @@ def kin_of(
     return list(found.values())
 
 
+def kin_alike(
+    best: Followed, others: Sequence[Fitted], candidates: Mapping[str, Candidate]
+) -> list[Fitted]:
+    """Laws of the same thing as the best, where that is on in some places only.
+
+    Which places are on was a guess, over a short stretch: one law's is no guide for another.
+
+    Parameters
+    ----------
+    best
+        What came to the end with one cause.
+    others
+        Single causes.
+    candidates
+        By name.
+    """
+    if best.state is None or not best.to_end or len(best.names) != 1:
+        return []
+    if best.state.alike() is best.state:
+        return []
+    (known,) = best.names
+    family = candidates[known].family
+
+    def is_kin(one: Fitted) -> bool:
+        (name,) = one.hypothesis.names
+        return name == known or bool(family and candidates[name].family == family)
+
+    return [one for one in others if len(one.hypothesis.names) == 1 and is_kin(one)]
+
+
 def kin_left(
     best: Followed, led: Sequence[Followed], candidates: Mapping[str, Candidate]
 ) -> Iterator[tuple[str, str, tuple[str, ...]]]:

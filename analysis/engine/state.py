@@ -6,7 +6,7 @@ from math import exp, log
 
 import numpy as np
 
-from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.screen import Scored, groups, limits
 from analysis.engine.system import Array, Candidate, Point, Setting, Shape
 
@@ -182,6 +182,20 @@ class State:
             tuple(self.numbers[i] for i in keep),
             self.values[keep],
         )
+
+    def alike(self) -> "State":
+        """With all places of every cause on, alike, as strong on average as the places that are."""
+        hypothesis, magnitudes = self.hypothesis, self.term_values()
+        for name, part in self.hypothesis.parts.items():
+            candidate = self.candidates[name]
+            every = tuple(one.name for one in candidate.terms)
+            if candidate.shareable and not candidate.together and len(every) > 1:
+                mean = sum(magnitudes.get((name, one), 0.0) for one in every) / len(every)
+                magnitudes |= {(name, one): mean for one in every}
+                hypothesis = hypothesis.plus(name, Part(every, True, part.shapes))
+        if hypothesis.key == self.hypothesis.key:
+            return self
+        return State.at(hypothesis, magnitudes, self.candidates)
 
     def bounds(self) -> tuple[Array, Array]:
         """How far the free numbers may move from here, shapes by a third of their range a time."""

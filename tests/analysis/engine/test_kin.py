@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.kin import instead, lead_instead, part_of_the_way
+from analysis.engine.kin import instead, kin_alike, lead_instead, part_of_the_way
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import (
@@ -64,6 +66,31 @@ def test_numbers_of_shape_that_both_have_stay_as_far_as_they_may() -> None:
 
 def test_a_law_that_has_no_such_places_is_none() -> None:
     assert instead(dry_on(**{"size@2": 0.3}), "dry", "elsewhere") is None
+
+
+def test_places_alike_are_all_of_them_as_strong_on_average() -> None:
+    alike = dry_on(**{"size@1": 0.6, "size@3": 0.3}).alike()
+    part = alike.hypothesis.parts["dry"]
+    assert part.shared
+    assert part.terms == ("size@1", "size@2", "size@3")
+    assert alike.term_values() == {("dry", f"size@{place}"): pytest.approx(0.3) for place in "123"}
+    assert alike.alike() is alike
+
+
+def single(state: State) -> Fitted:
+    return cast(Fitted, SimpleNamespace(hypothesis=state.hypothesis, state=state))
+
+
+def test_laws_of_one_kind_are_asked_in_all_places_where_one_came_through_in_some() -> None:
+    some = dry_on(**{"size@1": 0.6})
+    capstan = instead(some, "dry", "capstan")
+    assert capstan is not None
+    both = [single(some), single(capstan)]
+    costs = {1.0: 5.0}
+    best = Followed(np.zeros(1), some, costs=costs)
+    assert kin_alike(best, both, CANDIDATES) == both
+    assert kin_alike(replace(best, state=some.alike()), both, CANDIDATES) == []
+    assert kin_alike(replace(best, costs={0.5: 5.0}), both, CANDIDATES) == []
 
 
 def test_part_of_the_way_to_one_cause_more_takes_part_of_each_step_and_of_the_new_cause() -> None:
