@@ -300,7 +300,8 @@ class FollowedSearch:
         known = {one.names for one in self._led if one.to_end and cost_of(one) < close}
         for name in whole.names:
             state = whole.state.without(name)
-            if state.hypothesis.names in known or self._effort > self._most:
+            # However much was tried: a second cause may stand for what the first had not been.
+            if state.hypothesis.names in known:
                 continue
             fewer = lead_from(self._system, whole, state)
             self._keep(fewer)
