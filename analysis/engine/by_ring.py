@@ -101,7 +101,8 @@ def by_ring(
         single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
     # Where parameters alone come to the noise, what they made up for could be several things.
-    led.follow(_abreast(single) if nothing.left < FAINT else single[:1], single)
+    first = _abreast(single) if nothing.left < FAINT else single[:1]
+    led.follow(first, single, guessed=about.followed.telling < 1.0)
     if near or led.arrived:
         rung = led.fitted()
         return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)

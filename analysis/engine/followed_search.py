@@ -114,7 +114,9 @@ class FollowedSearch:
         self._exchanged: set[tuple[str, ...]] = set()
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
-    def follow(self, hypotheses: Sequence[Fitted], others: Sequence[Fitted]) -> None:
+    def follow(
+        self, hypotheses: Sequence[Fitted], others: Sequence[Fitted], *, guessed: bool = False
+    ) -> None:
         """Lead hypotheses to the ring's phase.
 
         Parameters
@@ -123,6 +125,8 @@ class FollowedSearch:
             Those to try, the null not among them; what was led to the end is not led again.
         others
             Single causes, the best first: laws of the same things as what comes far are tried too.
+        guessed
+            In which places they are was told over a short stretch.
         """
         for number, one in enumerate(self._fresh(hypotheses)):
             if number > 0 and (self._effort > self._most or self._is_kin(one)):
@@ -139,7 +143,8 @@ class FollowedSearch:
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead(one.point.nuisance, one.state, near=self._near)
-        self._lead_alike(others)
+        if guessed and not self._near:
+            self._lead_alike(others)
         self._one_less(self._best)
         self._lead_rivals()
         for _ in range(self._most_causes - 1):
@@ -228,14 +233,16 @@ class FollowedSearch:
     def _lead_alike(self, others: Sequence[Fitted]) -> None:
         """Laws of the best's kind in all places alike, where it leaves more than noise."""
         best = self._best
-        if self._near or best.left < NOISE:
+        if best.left < NOISE:
             return
         for one in kin_alike(best, others, self._refiner.candidates):
-            if self._effort < self._most:
-                start, state = one.point.nuisance, one.state.alike()
-                self._keep(
-                    follow_ring(self._system, start, state, everything=True, ahead=best.costs)
-                )
+            found = follow_ring(
+                self._system, one.point.nuisance, one.state.alike(), everything=True,
+                ahead=best.costs,
+            )  # fmt: skip
+            # What falls behind says nothing of its kind: that is led from the best's own places.
+            if farthest_first(found) < farthest_first(self._best):
+                self._keep(found)
 
     def _lead_rivals(self) -> None:
         """Kin of what is on are led, and what promises as much as it does."""
