@@ -69,7 +69,7 @@ def chained(system: System, first: Followed, records: Sequence[str], beside: Arr
     later: list[str] = []
     together = len(led)
     while left or later:
-        nearest = min(left or later, key=lambda name: _off(system, name, told.at))
+        nearest = min(left or later, key=lambda name: left_in(system, name, told.at))
         part = Part(system, (nearest,))
         known = told.of(part)
         found = _led(part, told.at, known)
@@ -130,8 +130,8 @@ def _information(part: Part, found: Followed) -> Array:
     return np.asarray(columns @ columns.T)
 
 
-def _off(system: System, record: str, at: Followed) -> float:
-    """Squared misfit of a recording's sample, on average."""
+def left_in(system: System, record: str, at: Followed) -> float:
+    """Squared misfit of a recording's sample, on average, at numbers of the whole system."""
     part = Part(system, (record,))
     there = Followed(part.own(at.nuisance), at.state)
     (found,) = Samples(part, everything=True).residuals([there.point])

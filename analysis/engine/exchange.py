@@ -54,7 +54,7 @@ def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Scored]
         if explains < BEHIND:
             continue
         least = itself.log_score - max(BEHIND, (1.0 - NEARLY) * explains)
-        for other in {one for one, _ in found.terms}:
+        for other in dict.fromkeys(one for one, _ in found.terms):
             one = screen.best_of(other)
             if one is not None and one.log_score > least:
                 ahead = one.log_score - itself.log_score

@@ -9,10 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-
 from analysis.engine.by_ring import Found, Start, by_ring
-from analysis.engine.chain import Chained, chained
+from analysis.engine.chain import Chained, chained, left_in
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
@@ -20,7 +18,6 @@ from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
-from analysis.engine.ring_samples import Samples
 from analysis.engine.system import Array, System
 
 PILOTS_FROM = 3
@@ -140,12 +137,7 @@ def _next(
 
     In the nearest rings are least, and are followed farthest.
     """
-    left = {}
-    for name in records_of(system):
-        if name not in tried:
-            part = Part(system, (name,))
-            point = Followed(part.own(nuisance), None).point
-            (found,) = Samples(part, everything=True).residuals([point])
-            left[name] = float(np.mean(found**2))
+    at = Followed(nuisance, None)
+    left = {name: left_in(system, name, at) for name in records_of(system) if name not in tried}
     off = {name: one for name, one in left.items() if one > FAINT} or left
     return (max if farthest else min)(off, key=lambda name: off[name], default=None)
