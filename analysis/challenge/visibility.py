@@ -46,7 +46,8 @@ class Metric:
     known
         The data with nothing concealed.
     absorbing
-        Change of the data for one sigma of each number, shape (n, numbers).
+        Change of the data for one sigma of each number, then of what sound machines have of an
+        effect, shape (n, numbers + effects).
     numbers
         Name of each number and its one sigma.
     """
@@ -73,18 +74,20 @@ class Metric:
         for name, step in numbers:
             moved = replace(bare, offset=bare.offset.with_added(**{name: SMALL * step}))
             columns.append((whitened(moved, known.step_s) - known.data) / SMALL)
+        for effect in catalogue().values():
+            if effect.sound > 0.0:
+                shown = bare.with_concealed(Concealed(effect, SMALL * effect.sound, (), {}))
+                columns.append((whitened(shown, known.step_s) - known.data) / SMALL)
         return cls(known, np.stack(columns, axis=1), numbers)
 
     def sigmas(self, offset: Mapping[str, Array | float]) -> Array | None:
-        """How many sigmas of each number an offset is; None where it moves another."""
+        """How many sigmas of each column an offset is; None where it moves another number."""
         if not {name for name, _ in self.numbers} >= set(offset):
             return None
-        return np.array(
-            [
-                np.sum(np.multiply(offset.get(name, 0.0), step)) / np.sum(np.square(step))
-                for name, step in self.numbers
-            ]
-        )
+        found = np.zeros(self.absorbing.shape[1])
+        for j, (name, step) in enumerate(self.numbers):
+            found[j] = np.sum(np.multiply(offset.get(name, 0.0), step)) / np.sum(np.square(step))
+        return found
 
     def inner(self, one: Array, other: Array) -> float:
         """The product one^T (1 + J J^T)^-1 other."""

@@ -23,6 +23,9 @@ STRONGEST = 4.0
 STIFFEST_RIVAL_N_PER_M = 6e3
 """Of the bristles of a rival at its usual size."""
 
+APART = 1e6
+"""Stands for tensions, N, and poses, m and rad, of a machine that came apart."""
+
 COMPARED_HZ = 100.0
 """Faster samples are thinned to this rate, and weighed accordingly."""
 
@@ -83,6 +86,12 @@ def whitened(
 
 
 def _run(case: Case, number: int, course: Course) -> Array:
+    if np.isnan(course.pose[-1, 0]):
+        course = replace(
+            course,
+            tension_n=np.nan_to_num(course.tension_n, nan=APART),
+            pose=np.nan_to_num(course.pose, nan=APART),
+        )
     measured = case.recorded(case.runs[number], course, noise=False)
     thin = max(1, int(case.sensing.poll_hz / COMPARED_HZ))
     tension = measured.tension_n[::thin] / case.sensing.tension_noise_n * np.sqrt(thin)

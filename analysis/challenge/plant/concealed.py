@@ -62,6 +62,8 @@ class Effect:
     straight
         Whether a small size acts like a large one in proportion. It then shows by its slope: a
         machine that rings long runs out of phase with a far one, which is no more visible for it.
+    sound
+        What a sound machine has of it, one sigma: so much is no mismatch. Quartz is off by this.
     """
 
     name: str
@@ -77,6 +79,7 @@ class Effect:
     told: Told | None = None
     least: float = 0.0
     straight: bool = False
+    sound: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -241,6 +241,7 @@ PLATFORM_EFFECTS = (
         0.03,
         _drive_frequency,
         signed=True,
+        sound=30e-6,
     ),
     Effect("drive_phase", "drive", "late_s", "s", 8e-3, 0.08, _drive_phase),
     Effect(

@@ -169,6 +169,7 @@ SENSOR_EFFECTS = (
         4000.0,
         _camera(lambda size, _: CameraFault(drift_ppm=size)),
         signed=True,
+        sound=30.0,
     ),
     Effect(
         "frames_dropped",

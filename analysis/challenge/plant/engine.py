@@ -14,6 +14,10 @@ Array = NDArray[np.float64]
 LIBRARIES = ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll")
 """What MuJoCo's shared library is called on Linux, macOS and Windows."""
 
+FASTEST = 1e3
+"""A platform this fast, m/s or rad/s, has come apart. Long before MuJoCo would see it, begin anew
+at rest in the middle of the run, and say so in a file of its own only."""
+
 XML = """
 <mujoco>
   <option timestep="{step}" gravity="0 0 {gravity}" integrator="Euler">
@@ -104,6 +108,11 @@ def compiled_loop() -> Any:
     ) -> None:
         wrench, attitude = np.zeros(6), np.zeros(3)
         for n in range(len(drive)):
+            for j in range(6):
+                if not abs(qvel[j]) < FASTEST or np.isnan(qpos[j]):
+                    # All that follows is no number, a later call's included.
+                    qpos[0], pose[n:], cell[n:] = np.nan, np.nan, np.nan
+                    return
             kick = 1.0
             if n == jump_at:
                 # Rates are half a step behind: from a jump on, half a kick brings them there.

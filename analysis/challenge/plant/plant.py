@@ -75,6 +75,8 @@ class Course:
         At the cells, shape (n, 8), N.
     pose
         X, Y, Z of the centre of mass (the rig file's) in m, roll, pitch, yaw in rad; shape (n, 6).
+
+    From where a machine came apart both are not-a-number.
     """
 
     t_s: Array

@@ -16,8 +16,10 @@ from analysis.challenge.plant.record import Sensing
 from analysis.challenge.rig_text import rig_text
 from analysis.challenge.rigs import cdpr8, drawn_machine, with_pretension
 from analysis.challenge.seal import open_seal
+from analysis.challenge.strength import holds, tamed
 from analysis.challenge.truth import drawn_offset
 from analysis.challenge.visibility import Metric, look
+from analysis.challenge.whitened import whitened
 from cdpr8.errors import DataError
 from cdpr8.rigfile import Excitation, Rig, parse_rig
 from cdpr8.runfolder import load_run
@@ -183,6 +185,33 @@ def test_visibility_tells_what_the_machine_absorbs_from_what_it_does_not(short: 
     # Twice the drift stands out twice as far.
     one, two = (seen("cell_drift", size, (1,))[1] for size in (0.01, 0.02))
     assert two == pytest.approx(2.0 * one, rel=0.05)
+
+
+def test_what_every_quartz_is_off_by_is_no_mismatch(short: Case) -> None:
+    metric = Metric.of(short)
+
+    def stands_out(name: str, size: float) -> float:
+        shown = Concealed(catalogue()[name], size, (), {})
+        return look(short.with_concealed(shown), metric, rivals=False)[0].stands_out
+
+    for name, one_sigma in (("drive_frequency", 30e-6), ("clock_drift", 30.0)):
+        assert stands_out(name, 2.0 * one_sigma) < 2.1
+        assert stands_out(name, 60.0 * one_sigma) > 1.5 * stands_out(name, 15.0 * one_sigma)
+
+
+def test_a_machine_that_comes_apart_says_so_and_is_no_run(short: Case) -> None:
+    # Dampers this stiff cannot be integrated by steps this long.
+    dampers = Concealed(catalogue()["cable_viscous"], 2e4, tuple(range(1, 9)), {})
+    case = short.with_concealed(dampers)
+    course = case.happened(case.runs[0], 1e-3)
+    assert np.isnan(course.pose[-1]).all()
+    assert np.isnan(course.tension_n[-1]).all()
+    assert not holds(case, 1e-3)
+    metric = Metric.of(short)
+    assert metric.length(whitened(case, 1e-3) - metric.known.data) > 1e5
+    tame = tamed(case)
+    assert 1.0 < tame.concealed[0].size < 2e4
+    assert holds(tame, 5e-4)
 
 
 @pytest.mark.slow
