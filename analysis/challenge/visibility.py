@@ -117,6 +117,9 @@ def _steps(case: Case) -> list[tuple[str, Array | float]]:
         ("centre_m", platform.centre_of_mass_m.sigma),
     ):
         steps += [(name, row * np.eye(3)[j]) for j in range(3)]
+    for i, cable in enumerate(rig.cable):
+        for name, sigma in (("base_m", cable.base_m.sigma), ("anchor_m", cable.anchor_m.sigma)):
+            steps += [(name, sigma * np.outer(each[i], np.eye(3)[j])) for j in range(3)]
     return steps
 
 

@@ -179,6 +179,10 @@ def test_visibility_tells_what_the_machine_absorbs_from_what_it_does_not(short: 
     whole, stands_out = seen("stiffness", 0.08, (1,))
     assert whole > 20.0
     assert 1.0 < stands_out < 4.2
+    # A wheel leads its cable a little elsewhere, as a base point does that is a little off.
+    whole, stands_out = seen("pulley_geometry", 2e-3, tuple(range(1, 9)))
+    assert whole > 20.0
+    assert stands_out < 6.0
     # A cell's lag is no machine's.
     whole, stands_out = seen("cell_lag", 0.01, (1,))
     assert stands_out > 0.5 * whole
