@@ -85,7 +85,7 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     found, refiner
         As for `faint_search`.
     explains
-        Share of what is left, as the score counts it, that it must promise to explain.
+        Share of what is left beyond noise, as the score counts it, that it must promise to explain.
     """
     asked = {name for name, _ in found.terms}
     beside = others_beside(refiner, found.followed)
@@ -102,12 +102,18 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
         state=state,
     )
     nothing = screen.null().log_score
-    least = nothing + ASKS + explains * max(-nothing, 0.0)
+    least = nothing + ASKS + explains * _beyond_noise(found)
     best = [one for one in _best(screen, chosen, on) if one.log_score > least]
     if found.followed.telling == 1.0:
         return best
     simpler = (_simpler(screen, one, nothing) for one in best)
     return sorted(simpler, key=lambda one: -one.log_score)
+
+
+def _beyond_noise(found: Faint) -> float:
+    """What is left beyond noise where candidates could be, as a score counts it."""
+    residual, base = found.problem.residual, found.problem.base
+    return 0.5 * max(float(np.sum(residual**2 / base)) - len(residual), 0.0)
 
 
 def _simpler(screen: Screen, scored: Scored, nothing: float) -> Scored:
