@@ -8,6 +8,7 @@ that they need not be.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,7 +33,22 @@ MOST = 2
 """So many rivals are led from one hypothesis."""
 
 
-def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Scored]:
+class Exchange(NamedTuple):
+    """A hypothesis with another cause in the place of one that is on.
+
+    Attributes
+    ----------
+    ahead
+        By how much its score is promised to lie above that of the cause it stands for.
+    scored
+        The hypothesis.
+    """
+
+    ahead: float
+    scored: Scored
+
+
+def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Exchange]:
     """Hypotheses with another cause in the place of one that is on, the best first.
 
     Parameters
@@ -44,28 +60,40 @@ def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Scored]
         By name.
     """
     state = found.followed.state
-    promised: dict[tuple[str, ...], tuple[float, Scored]] = {}
-    for name in () if state is None else state.hypothesis.names:
+    promised: dict[tuple[str, ...], Exchange] = {}
+    on = () if state is None else state.hypothesis.names
+    for name in on:
         if candidates[name].fixed:
             continue
-        screen = _without(found, candidates, name)
+        screen = without(found, candidates, name)
         itself, nothing = _itself(found, candidates, name), screen.null()
         explains = itself.log_score - nothing.log_score
         if explains < BEHIND:
             continue
         least = itself.log_score - max(BEHIND, (1.0 - NEARLY) * explains)
         for other in dict.fromkeys(one for one, _ in found.terms):
+            if other in on:
+                continue
             one = screen.best_of(other)
             if one is not None and one.log_score > least:
                 ahead = one.log_score - itself.log_score
                 known = promised.get(one.hypothesis.names)
-                if known is None or ahead > known[0]:
-                    promised[one.hypothesis.names] = (ahead, one)
-    return [one for _, one in sorted(promised.values(), key=lambda both: -both[0])]
+                if known is None or ahead > known.ahead:
+                    promised[one.hypothesis.names] = Exchange(ahead, one)
+    return sorted(promised.values(), key=lambda one: -one.ahead)
+
+
+def fresh(promised: Sequence[Exchange], led: Sequence[Followed]) -> list[Exchange]:
+    """Those that were not led to the end, the best first; so many that are led at most."""
+    done = {one.names for one in led if one.to_end}
+    return [one for one in promised if one.scored.hypothesis.names not in done][:MOST]
 
 
 def rivals(
-    system: System, found: Faint, candidates: Mapping[str, Candidate], led: Sequence[Followed]
+    system: System,
+    found: Faint,
+    candidates: Mapping[str, Candidate],
+    promised: Sequence[Exchange],
 ) -> Iterator[Followed]:
     """Lead what promises about as much as a cause that is on, from where straight lines say.
 
@@ -75,12 +103,10 @@ def rivals(
         What is simulated.
     found, candidates
         As for `exchanged`.
-    led
-        All that was led: what came to the end is not led again.
+    promised
+        What to lead.
     """
-    done = {one.names for one in led if one.to_end}
-    fresh = [one for one in exchanged(found, candidates) if one.hypothesis.names not in done]
-    for one in fresh[:MOST]:
+    for _, one in promised:
         state = State.of(one, candidates)
         yield lead_from(system, found.followed, state, nuisances_of(found, one))
 
@@ -98,7 +124,7 @@ def plainest(
     return plain if asks else None
 
 
-def _without(
+def without(
     found: Faint, candidates: Mapping[str, Candidate], name: str, itself: Array | None = None
 ) -> Screen:
     """What is to be explained where a cause is taken off and what it does is given back.
@@ -139,7 +165,7 @@ def _itself(found: Faint, candidates: Mapping[str, Candidate], name: str) -> Sco
     for group, place in zip(groups(part), magnitudes, strict=True):
         columns[:, terms.index(group[0])] = found.own[name][:, place]
     asked = Part(part.terms, part.shared, candidates[name].variants()[0])
-    return _without(found, candidates, name, columns).with_part(name, asked)
+    return without(found, candidates, name, columns).with_part(name, asked)
 
 
 def _magnitudes(state: State, name: str) -> tuple[list[int], Array]:

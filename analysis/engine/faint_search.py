@@ -90,9 +90,27 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     asked = {name for name, _ in found.terms}
     beside = others_beside(refiner, found.followed)
     chosen = {one.name: one for one in beside if one.name in asked}
+    screen = _about(found, refiner)
+    nothing = screen.null().log_score
+    least = nothing + ASKS + explains * _beyond_noise(found)
+    best = [one for one in _best(screen, chosen, screen.on) if one.log_score > least]
+    if found.followed.telling == 1.0:
+        return best
+    simpler = (_simpler(screen, one, nothing) for one in best)
+    return sorted(simpler, key=lambda one: -one.log_score)
+
+
+def most_promised(found: Faint, refiner: Refiner) -> float:
+    """By how much the score is promised to rise at most by one cause more."""
+    first = max((one.log_score for one in one_more(found, refiner)), default=-np.inf)
+    return float(first - _about(found, refiner).null().log_score)
+
+
+def _about(found: Faint, refiner: Refiner) -> Screen:
+    """What is on, which may still move, and what could be beside it."""
     state = found.followed.state
     on = Hypothesis() if state is None else state.hypothesis
-    screen = Screen(
+    return Screen(
         found.problem,
         refiner.candidates,
         found.terms,
@@ -101,13 +119,6 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
         own=found.own,
         state=state,
     )
-    nothing = screen.null().log_score
-    least = nothing + ASKS + explains * _beyond_noise(found)
-    best = [one for one in _best(screen, chosen, on) if one.log_score > least]
-    if found.followed.telling == 1.0:
-        return best
-    simpler = (_simpler(screen, one, nothing) for one in best)
-    return sorted(simpler, key=lambda one: -one.log_score)
 
 
 def _beyond_noise(found: Faint) -> float:

@@ -1,16 +1,22 @@
 """What else explains about as well what a cause does."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from analysis.engine import followed_search
 from analysis.engine.all_samples import cost_of
-from analysis.engine.exchange import exchanged, plainest, rivals
-from analysis.engine.faint import faint
+from analysis.engine.exchange import exchanged, fresh, plainest, rivals
+from analysis.engine.faint import Faint, faint
 from analysis.engine.followed import Followed
+from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.look import look
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
 from analysis.engine.system import (
     Array,
@@ -42,6 +48,14 @@ def cause(name: str, *shapes: Shape, fixed: bool = False) -> Candidate:
 
 
 BENT, TRUE, OTHER = cause("bent"), cause("true"), cause("other")
+NEAR, RAISED = cause("near"), cause("raised")
+DOES = {
+    "bent": THERE + LEVEL,
+    "true": THERE,
+    "other": ELSE,
+    "near": THERE + 0.03 * ELSE,
+    "raised": LEVEL,
+}
 WHICH = cause("which", Shape("way", "1", 0.0, 0.0, 1.0, (0.0, 1.0), False, True), fixed=True)
 
 
@@ -51,13 +65,12 @@ class _Straight:
     name = "straight"
     nuisances = (Nuisance("level", 0.05, "V"),)
 
-    def __init__(self, *candidates: Candidate) -> None:
+    def __init__(self, *candidates: Candidate, raised: float = 0.0) -> None:
         self.candidates = candidates
         noise = NOISE * np.random.default_rng(5).normal(size=len(TIMES_S))
+        seen = (THERE + raised * LEVEL + noise)[:, None]
         whole = (Segment(0.0, 1.0, None, 20.0),)
-        self.bundles = (
-            Bundle(("y",), ("V",), TIMES_S, (THERE + noise)[:, None], np.eye(1) * NOISE**2, whole),
-        )
+        self.bundles = (Bundle(("y",), ("V",), TIMES_S, seen, np.eye(1) * NOISE**2, whole),)
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""
@@ -70,7 +83,7 @@ class _Straight:
             if name == "which":
                 seen = seen + (size > 0.0) * (THERE if setting.shapes["way"] else ELSE)
             else:
-                seen = seen + size * {"bent": THERE + LEVEL, "true": THERE, "other": ELSE}[name]
+                seen = seen + size * DOES[name]
         return np.asarray(seen)
 
     @property
@@ -86,7 +99,8 @@ def test_what_needs_no_parameter_bent_is_promised_in_the_place_of_what_does() ->
     system = _Straight(BENT, TRUE, OTHER)
     known = {one.name: one for one in system.candidates}
     found = faint(system, system.bent, [TRUE, OTHER])
-    (one,) = exchanged(found, known)
+    ((ahead, one),) = exchanged(found, known)
+    assert ahead > 0.0
     assert one.hypothesis.names == ("true",)
     assert one.values["true", "size"] == pytest.approx(1.0, abs=0.05)
 
@@ -95,19 +109,46 @@ def test_it_is_led_from_there_and_costs_as_much_less_as_the_parameter_did() -> N
     system = _Straight(BENT, TRUE, OTHER)
     known = {one.name: one for one in system.candidates}
     found = faint(system, system.bent, [TRUE, OTHER])
-    (led,) = rivals(system, found, known, [system.bent])
+    promised = exchanged(found, known)
+    (led,) = rivals(system, found, known, fresh(promised, [system.bent]))
     assert led.names == ("true",)
     assert cost_of(led) < cost_of(system.bent) - 350.0
-    assert list(rivals(system, found, known, [system.bent, led])) == [], "it was led"
+    assert fresh(promised, [system.bent, led]) == [], "it was led"
 
 
 def test_what_is_there_or_not_is_asked_as_a_whole_in_each_of_its_ways() -> None:
     system = _Straight(BENT, WHICH)
     known = {one.name: one for one in system.candidates}
     found = faint(system, system.bent, [WHICH])
-    (one,) = exchanged(found, known)
+    ((_, one),) = exchanged(found, known)
     assert one.hypothesis.parts["which"].shapes == {"way": 1.0}
     assert one.values["which", "size"] == 1.0
+
+
+@pytest.mark.parametrize("more", [True, False])
+def test_rivals_of_what_explains_to_the_noise_wait_for_one_cause_more(
+    monkeypatch: pytest.MonkeyPatch, more: bool
+) -> None:
+    """A second cause that a parameter stands for is led first; without one, rivals are."""
+    system = _Straight(TRUE, NEAR, RAISED, raised=1.0 if more else 0.0)
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    order: list[tuple[str, ...]] = []
+
+    def asked(_: object, found: Faint, *__: object) -> Iterator[Followed]:
+        order.append(found.followed.names)
+        return iter(())
+
+    monkeypatch.setattr(followed_search, "rivals", asked)
+    nothing = replace(follow_ring(system, np.zeros(1), everything=True), columns=None)
+    search = FollowedSearch(refiner, nothing, 2)
+    known = {one.name: one for one in system.candidates}
+    state = State.at(Hypothesis({"true": Part(("size",))}), {("true", "size"): 1.0}, known)
+    search.follow([refiner.at(state, np.zeros(len(seen.calibrated.at)))], [])
+    found = search.fitted()
+    assert found is not None
+    assert found[0].hypothesis.names == (("raised", "true") if more else ("true",))
+    assert order[0] == found[0].hypothesis.names
 
 
 def test_of_what_comes_as_far_the_fewest_causes_are_asked() -> None:

@@ -1,0 +1,141 @@
+"""Hypotheses that were led to the ring's phase, and what all samples say of them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from analysis.engine.all_samples import (
+    all_samples_say,
+    farthest_first,
+    led_through,
+    misfit_at,
+    nothing_again,
+)
+from analysis.engine.faint import Faint, faint
+from analysis.engine.faint_search import others_beside
+from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
+from analysis.engine.part import records_of
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.sensitivity import Progress
+from analysis.engine.sharpen import sharpened
+from analysis.engine.state import State
+from analysis.engine.system import Array
+from analysis.engine.way import HOPELESS
+
+RESTARTS = 1
+"""Nothing is led to the phase once more from where so many hypotheses have come: one may have found
+a way that nothing missed."""
+
+EFFORT, RECORDS = 3000.0, 4
+"""Whole simulations, after which nothing new is tried; fewer, of more recordings than that."""
+
+ARRIVED = 2.5
+"""What was led to the end speaks for every sample, where no more than this is left of the squared
+misfit of one, on average: laws are not exact."""
+
+
+class Leader:
+    """Leads hypotheses, each for itself, and keeps what was led.
+
+    Parameters
+    ----------
+    refiner
+        Made the hypotheses.
+    nothing
+        How far parameters alone lead.
+    most_causes
+        Of a hypothesis.
+    progress
+        Told of it.
+    near
+        All hypotheses are near the ring's phase, and their scores tell what each can come to.
+    """
+
+    def __init__(
+        self,
+        refiner: Refiner,
+        nothing: Followed,
+        most_causes: int,
+        progress: Progress | None = None,
+        *,
+        near: bool = False,
+    ) -> None:
+        self._refiner = refiner
+        self._system = refiner.system
+        self._nothing = nothing
+        self._most_causes = most_causes
+        self._progress = progress
+        self._near = near
+        self._samples = Samples(self._system, everything=True)
+        self._led: list[Followed] = []
+        self._tried: set[tuple[str, ...]] = set()
+        self._begun: list[State] = []
+        self._effort = 0.0
+        self._asked: Faint | None = None
+        self._exchanged: set[tuple[str, ...]] = set()
+        self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
+
+    @property
+    def arrived(self) -> bool:
+        """Whether something was led to the end, near the noise."""
+        return bool(self._led) and self._best.misfit < ARRIVED * len(self._samples.shares)
+
+    def fitted(self) -> list[Fitted] | None:
+        """Hypotheses with the scores of all samples, the best first; None: none comes near."""
+        count = len(self._samples.shares)
+        self._led = led_through(self._system, self._led)
+        first = sorted(self._led, key=farthest_first)
+        nothing = nothing_again(self._system, self._nothing, first[:RESTARTS])
+        if min(one.misfit for one in (*self._led, nothing)) > ARRIVED * count:
+            return None
+        return all_samples_say(self._refiner, self._led, nothing, count)
+
+    @property
+    def _best(self) -> Followed:
+        return min(self._led, key=farthest_first, default=self._nothing)
+
+    def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
+        self._begun.append(state)
+        system, ahead = self._system, self._best.costs if self._led else None
+        # What nuisances do, about what a new hypothesis is near to.
+        close = self._nothing if self._best.columns is None else self._best
+        lent = close.columns if near else None
+        found = follow_ring(
+            system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent
+        )
+        lost = self._best.to_end and found.misfit > HOPELESS * self._best.misfit
+        if near and found.share < 1.0 and not lost:
+            self._effort += found.effort
+            found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
+        if found.share < 1.0:
+            left = self._samples, found.nuisance
+            sharper = sharpened(state, lambda there: -misfit_at(*left, there))
+            if sharper is not state:
+                self._effort += found.effort
+                found = follow_ring(system, found.nuisance, sharper, everything=True, ahead=ahead)
+        self._keep(found)
+
+    def _keep(self, found: Followed) -> None:
+        self._effort += found.effort
+        if farthest_first(found) > farthest_first(self._best):
+            found = replace(found, columns=None)
+        self._led.append(found)
+        if self._progress is not None:
+            self._progress(len(self._led), len(self._led))
+
+    def _fresh(self, hypotheses: Sequence[Fitted]) -> list[Fitted]:
+        """Those that were not led to the end before, nor lost from about the same start."""
+        known = {one.names for one in self._led if one.to_end}
+        fresh = [one for one in hypotheses if one.hypothesis.names not in known]
+        return [one for one in fresh if not any(one.state.is_about(at) for at in self._begun)]
+
+    def _faint(self, about: Followed) -> Faint:
+        """What could be there beside what is on; that of where it was asked last is kept."""
+        there = about.about or about
+        known = None if self._asked is None else self._asked.followed
+        if known is None or known.nuisance is not there.nuisance or known.state is not there.state:
+            self._asked = faint(self._system, about, others_beside(self._refiner, about))
+        assert self._asked is not None
+        return self._asked
