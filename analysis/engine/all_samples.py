@@ -102,7 +102,7 @@ def all_samples_say(
     refiner
         Makes fitted hypotheses of them.
     led
-        With causes; of one set the closest counts.
+        With causes; of one set in several places, or to several ends, the likeliest counts.
     nothing
         Without any.
     count
@@ -114,9 +114,8 @@ def all_samples_say(
     hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
     allowed = count * max(noise_leaves(refiner.system.bundles), NOISE)
     unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
-    fitted = []
-    closest = {one.names: one for one in sorted(led, key=cost_of, reverse=True)}
-    for one in (*closest.values(), nothing):
+    likeliest: dict[tuple[str, ...], tuple[float, State, Followed]] = {}
+    for one in (*led, nothing):
         state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
         logs = []
         for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
@@ -128,6 +127,10 @@ def all_samples_say(
         strain = 0.5 * float(one.nuisance @ one.nuisance)
         prior = state.hypothesis.log_prior(refiner.candidates)
         score = float(np.logaddexp.reduce(logs)) - strain + prior
+        if one.names not in likeliest or score > likeliest[one.names][0]:
+            likeliest[one.names] = score, state, one
+    fitted = []
+    for score, state, one in likeliest.values():
         there = refiner.at(state, refiner.directions_of(one.nuisance))
         fitted.append(replace(there, log_score=score, point=one.point, left=one.misfit / count))
     return sorted(fitted, key=lambda one: -one.log_score)

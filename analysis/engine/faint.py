@@ -48,7 +48,8 @@ class Faint:
     problem
         What is left to explain there.
     terms
-        (candidate, variant) -> what one unit of each term does, shape (f, k).
+        (candidate, variant) -> what one unit of each term does, shape (f, k). One that is on has
+        but one variant: its shapes as they are.
     own
         Candidate that is on -> what its free numbers do, shape (f, k).
     rotation
@@ -77,7 +78,7 @@ def faint(
     followed
         About where; where its parameters made up for something, about those that had not begun to.
     candidates
-        What to look for; those that are on are not among them.
+        What to look for; of one that is on, each term beside what it is.
     progress
         Told of it.
     """
@@ -98,10 +99,12 @@ def faint(
     for candidate in candidates:
         # What is there or not is there as a whole.
         small = 1.0 if candidate.grows or candidate.fixed else SMALL
-        for v, shapes in enumerate(candidate.variants()):
+        there = on.get(candidate.name, Setting({}))
+        for v, shapes in enumerate(_variants(candidate, followed.point)):
             for k, term in enumerate(candidate.terms):
                 if (candidate.name, term.name) not in same:
-                    setting = Setting({term.name: small * term.step}, shapes)
+                    more = there.values.get(term.name, 0.0) + small * term.step
+                    setting = Setting({**there.values, term.name: more}, shapes)
                     effects = {**on, candidate.name: setting}
                     points.append(Point(followed.nuisance, effects, "as_is"))
                     places.append((candidate.name, v, k))
@@ -118,7 +121,8 @@ def faint(
     inside, residual_inside, noise = _compressed(changes, here)
     size = len(residual_inside)
     nuisance = inside[:, :count]
-    terms = _terms(candidates, nuisance / [one.sigma for one in system.nuisances], same)
+    numbers_do = nuisance / [one.sigma for one in system.nuisances]
+    terms = _terms(candidates, followed.point, numbers_do, same)
     for place, (name, v, k) in enumerate(places):
         terms[name, v][:, k] = inside[:, numbers + place]
     own: dict[str, Array] = {}
@@ -138,15 +142,22 @@ def faint(
     return Faint(followed, problem, terms, own, rotation)
 
 
+def _variants(candidate: Candidate, at: Point) -> Sequence[Mapping[str, float]]:
+    """Sets of shapes that are tried of a candidate; those that it has, where it is on."""
+    on = at.effects.get(candidate.name)
+    return candidate.variants() if on is None else (on.shapes,)
+
+
 def _terms(
     candidates: Sequence[Candidate],
+    at: Point,
     numbers: Array,
     same: Mapping[tuple[str | None, str | None], int],
 ) -> Columns:
     """Columns of terms that are parameters; zeros for the others."""
     terms: Columns = {}
     for candidate in candidates:
-        for v in range(len(candidate.variants())):
+        for v in range(len(_variants(candidate, at))):
             columns = np.zeros((len(numbers), len(candidate.terms)))
             for k, term in enumerate(candidate.terms):
                 i = same.get((candidate.name, term.name))

@@ -22,6 +22,7 @@ from analysis.engine.kin import (
     part_of_the_way,
 )
 from analysis.engine.leader import Leader
+from analysis.engine.places import is_placed, placed_again
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
@@ -46,6 +47,9 @@ CLOSE = 60.0
 
 EXCHANGES = 2
 """From what rivals have led to, rivals are looked for once more: so often at a time."""
+
+PLACINGS = 2
+"""From other places, places are asked once more: so often at a time."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -114,7 +118,7 @@ class FollowedSearch(Leader):
             best = self._best
         if best.state is None or not best.to_end:
             return
-        for known, name, names in kin_left(best, self._led, self._refiner.candidates):
+        for known, name, names in kin_left(best, self._in_place, self._refiner.candidates):
             if names in self._tried or self._effort > self._most:
                 continue
             self._tried.add(names)
@@ -136,6 +140,33 @@ class FollowedSearch(Leader):
             if farthest_first(found) < farthest_first(self._best):
                 self._keep(found)
 
+    @property
+    def _in_place(self) -> list[Followed]:
+        """What was led, but for what is to be led once more in other places."""
+        return [one for one in self._led if one.names not in self._misplaced]
+
+    def _lead_placed(self) -> None:
+        """What is on, in the places that are told at the end."""
+        candidates = self._refiner.candidates
+        for _ in range(PLACINGS):
+            best = self._best
+            if best.state is None or not best.to_end or self._effort > self._most:
+                return
+            if not any(is_placed(candidates[name]) for name in best.names):
+                return
+            if best.state.hypothesis.key in self._placed:
+                return
+            self._placed.add(best.state.hypothesis.key)
+            asked = self._faint(replace(best, about=None))
+            for _, one in placed_again(asked, candidates)[:1]:
+                state = State.of(one, candidates)
+                self._keep(lead_from(self._system, best, state, nuisances_of(asked, one)))
+            if cost_of(self._best) < cost_of(best) - WORTH_IT:
+                # What came as far may have been in places that are as wrong.
+                close = (one for one in self._led if cost_of(one) < cost_of(best) + CLOSE)
+                self._misplaced |= {one.names for one in close if one.names != best.names}
+                self._tried -= self._misplaced
+
     def _lead_rivals(self, *, last: bool = False) -> bool:
         """Kin of what is on are led, and what promises as much as it does.
 
@@ -144,6 +175,7 @@ class FollowedSearch(Leader):
         """
         candidates = self._refiner.candidates
         for _ in range(EXCHANGES):
+            self._lead_placed()
             self._lead_kin(self._best)
             plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)
             if plain is None or plain.names in self._exchanged or self._effort > self._most:
@@ -151,7 +183,7 @@ class FollowedSearch(Leader):
             # At the end strained parameters tell what they make up for.
             end = plain if plain.about is None else replace(plain, about=None)
             asked = self._faint(end)
-            promised = fresh(exchanged(asked, candidates), self._led)
+            promised = fresh(exchanged(asked, candidates), self._in_place)
             waits = plain is self._best and plain.left < NOISE and not last
             if waits and promised and most_promised(asked, self._refiner) > promised[0].ahead:
                 return False

@@ -15,6 +15,7 @@ from analysis.engine.faint_search import others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.part import records_of
+from analysis.engine.places import is_placed
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
@@ -75,6 +76,8 @@ class Leader:
         self._effort = 0.0
         self._asked: Faint | None = None
         self._exchanged: set[tuple[str, ...]] = set()
+        self._placed: set[tuple[object, ...]] = set()
+        self._misplaced: set[tuple[str, ...]] = set()
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
     @property
@@ -122,6 +125,7 @@ class Leader:
         if farthest_first(found) > farthest_first(self._best):
             found = replace(found, columns=None)
         self._led.append(found)
+        self._misplaced.discard(found.names)
         if self._progress is not None:
             self._progress(len(self._led), len(self._led))
 
@@ -132,10 +136,15 @@ class Leader:
         return [one for one in fresh if not any(one.state.is_about(at) for at in self._begun)]
 
     def _faint(self, about: Followed) -> Faint:
-        """What could be there beside what is on; that of where it was asked last is kept."""
+        """What could be there beside what is on, and of that elsewhere.
+
+        Where it was asked last is kept.
+        """
         there = about.about or about
         known = None if self._asked is None else self._asked.followed
         if known is None or known.nuisance is not there.nuisance or known.state is not there.state:
-            self._asked = faint(self._system, about, others_beside(self._refiner, about))
+            on = [self._refiner.candidates[name] for name in about.names]
+            asked = [*others_beside(self._refiner, about), *(one for one in on if is_placed(one))]
+            self._asked = faint(self._system, about, asked)
         assert self._asked is not None
         return self._asked

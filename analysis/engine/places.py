@@ -1,0 +1,51 @@
+"""Places again: what was led to the end is asked in which places it is, for there they are told.
+
+Over the short stretch where a search begins, places that are on tie with others, and parameters
+stand for those that are left out. At the end what a cause does is given back, and it is asked
+itself once more, in any places.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from analysis.engine.exchange import Exchange, without
+from analysis.engine.faint import Faint
+from analysis.engine.faint_search import ASKS
+from analysis.engine.hypothesis import Part
+from analysis.engine.system import Candidate
+
+
+def is_placed(candidate: Candidate) -> bool:
+    """Whether it can be in some places only, of which straight lines tell."""
+    whole = candidate.fixed or candidate.together or candidate.grows
+    return len(candidate.terms) > 1 and not whole
+
+
+def placed_again(found: Faint, candidates: Mapping[str, Candidate]) -> list[Exchange]:
+    """Hypotheses with one of the causes that are on in other places, the best first.
+
+    Parameters
+    ----------
+    found
+        About a hypothesis that was led to the end, at its end; a cause without `terms` is not
+        asked.
+    candidates
+        By name.
+    """
+    state = found.followed.state
+    promised: list[Exchange] = []
+    for name, part in () if state is None else state.hypothesis.parts.items():
+        if not is_placed(candidates[name]) or (name, 0) not in found.terms:
+            continue
+        # Its shapes stay as they are. How right its form is, what is left there has told.
+        asked = replace(candidates[name], shapes=(), form_share=0.0)
+        known = {**candidates, name: asked}
+        screen = without(found, known, name)
+        itself = screen.with_part(name, Part(part.terms, part.shared))
+        other = screen.best_of(name)
+        if other is None or other.log_score < itself.log_score + ASKS:
+            continue
+        there = replace(other.hypothesis.parts[name], shapes=part.shapes)
+        scored = replace(other, hypothesis=other.hypothesis.plus(name, there))
+        promised.append(Exchange(other.log_score - itself.log_score, scored))
+    return sorted(promised, key=lambda one: -one.ahead)
