@@ -11,7 +11,16 @@ from rig.tally import Tally
 STALE_S = 0.5
 """A value that has not changed by one digit for so long is no live measurement."""
 
-_OVERFLOW = TensionStatus.NET_OVERFLOW | TensionStatus.GROSS_OVERFLOW | TensionStatus.ADC_OVERFLOW
+# Plain numbers: flags cost microseconds, and values come some thousand times a second.
+_OVERFLOW = int(
+    TensionStatus.NET_OVERFLOW | TensionStatus.GROSS_OVERFLOW | TensionStatus.ADC_OVERFLOW
+)
+_ADC_OVERFLOW = int(TensionStatus.ADC_OVERFLOW)
+_HOST_OVERLOAD = int(TensionStatus.HOST_OVERLOAD)
+_STALE = int(TensionStatus.STALE)
+_UNCONFIRMED = int(TensionStatus.UNCONFIRMED)
+_UNTIMED = int(TensionStatus.UNTIMED)
+_BAD_TENSION = int(BAD_TENSION)
 
 Alarm = Callable[[int, str], None]
 """Told the cable and what is wrong with it; must not wait."""
@@ -63,18 +72,18 @@ class Intake:
         tension_n = station.scaling.tension_n(reading.digits)
         status = reading.status
         if reading.clamped or abs(reading.digits) >= station.limit_digits:
-            status |= TensionStatus.ADC_OVERFLOW
+            status |= _ADC_OVERFLOW
         if station.scaling.overloaded(tension_n):
-            status |= TensionStatus.HOST_OVERLOAD
+            status |= _HOST_OVERLOAD
         if not value.timed:
-            status |= TensionStatus.UNTIMED
+            status |= _UNTIMED
             self._tally.lose("untimed")
         if not believed:
-            status |= TensionStatus.UNCONFIRMED
+            status |= _UNCONFIRMED
             self._tally.lose("unconfirmed")
         else:
             if station.scaling.fine and self._stale(cable, reading.digits, value.received_s):
-                status |= TensionStatus.STALE
+                status |= _STALE
             self._watch_overload(station, tension_n, status, value.received_s)
         self._scribe.sample(
             Sample(
@@ -82,13 +91,13 @@ class Intake:
                 cable=cable,
                 digits=reading.digits,
                 tension_n=tension_n,
-                status=int(status),
+                status=status,
                 request_s=value.request_s - self._origin_s,
                 received_s=value.received_s - self._origin_s,
             )
         )
         self._tally.samples[cable] += 1
-        if status & BAD_TENSION:
+        if status & _BAD_TENSION:
             self._tally.lose("flagged")
         else:
             self._tally.tension_n[cable] = tension_n
@@ -104,7 +113,7 @@ class Intake:
         self, station: Station, tension_n: float, status: int, now_s: float
     ) -> None:
         cable = station.cable
-        over = bool(status & (_OVERFLOW | TensionStatus.HOST_OVERLOAD))
+        over = bool(status & (_OVERFLOW | _HOST_OVERLOAD))
         if over and cable not in self._overloaded:
             why = (
                 f"beyond what the amplifier can measure (status {status & 0xFF:#04x})"

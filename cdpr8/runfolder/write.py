@@ -31,13 +31,17 @@ class TableWriter:
     """
 
     def __init__(self, folder: Path, table: Table) -> None:
-        self._table = table
+        # How a number with a fixed number of digits is formatted, by column.
+        self._columns = tuple(
+            (column.name, "" if column.digits is None else f".{column.digits}f")
+            for column in table.columns
+        )
         self._file: TextIOWrapper = (folder / table.file).open("x", encoding="utf-8", newline="")
         self._file.write(",".join(table.names) + "\n")
 
     def append(self, row: Mapping[str, Cell]) -> None:
         """Write one row; columns left out stay empty."""
-        cells = [_spell(row.get(column.name), column.digits) for column in self._table.columns]
+        cells = [_spell(row.get(name), form) for name, form in self._columns]
         self._file.write(",".join(cells) + "\n")
 
     def sync(self) -> None:
@@ -217,13 +221,15 @@ def _video(folder: Path, start: StartRecord) -> VideoWriter | None:
     return VideoWriter(folder / "video.mkv", camera.width_px, camera.height_px, camera.fps)
 
 
-def _spell(value: Cell, digits: int | None) -> str:
-    if value is None:
-        return ""
+def _spell(value: Cell, form: str) -> str:
     if isinstance(value, float):
         if math.isnan(value):
             return ""
-        return f"{value:.{digits}f}" if digits is not None else repr(value)
+        return format(value, form) if form else repr(value)
+    if isinstance(value, int):
+        return str(value)
+    if value is None:
+        return ""
     text = str(value)
     if any(mark in text for mark in ',"\n\r'):
         return '"' + text.replace('"', '""').replace("\n", " ").replace("\r", " ") + '"'

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Protocol
 
 BUS_MODE = 16
@@ -122,6 +122,7 @@ class FrameFormat:
     crlf: bool = True
 
     @classmethod
+    @lru_cache(maxsize=64)  # the simulated amplifiers look it up for each value
     def of_output_format(cls, cof: int, csm: int, crlf: bool) -> "FrameFormat":
         """The format of a COF code (section 5).
 
@@ -186,11 +187,11 @@ class FrameFormat:
             data = digits.to_bytes(2, "big", signed=True)
         else:
             value = digits.to_bytes(3, "big", signed=True)
-            spare = {
-                Check.NONE: 0,
-                Check.STATUS: status,
-                Check.CHECKSUM: value[0] ^ value[1] ^ value[2],
-            }[self.check]
+            spare = 0
+            if self.check is Check.STATUS:
+                spare = status
+            elif self.check is Check.CHECKSUM:
+                spare = value[0] ^ value[1] ^ value[2]
             data = value + bytes([spare])
         if not self.most_significant_first:
             data = data[::-1]

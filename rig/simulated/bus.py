@@ -80,14 +80,19 @@ class SimulatedBus:
             if text and not ignored:
                 self._pass_on(text, selection, at_s)
 
+    @property
+    def streaming(self) -> bool:
+        """Whether a node sends values unasked."""
+        return any(node.powered and node.streaming for node in self.nodes)
+
     def speak(self, until_s: float) -> deque[Chunk]:
         """Answers under way, and what streaming nodes send up to `until_s`."""
         for node in self.nodes:
             while node.powered and node.streaming:
-                at_s, frame = node.next_streamed()
+                at_s = node.next_streamed_s
                 if at_s > until_s:
                     break
-                node.streamed()
+                frame = node.streamed()
                 # A node skips values that its line is too slow for (status bit 7, section 5).
                 if self._answer_free_s - at_s <= BACKLOG * len(frame) * self.line.char_s:
                     self._send(frame, at_s)

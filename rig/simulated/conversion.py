@@ -14,6 +14,8 @@ FACTORY_SPAN = 2 * DIGITS_PER_MV_PER_V[4]
 
 MILLION = 1_000_000
 
+_AS_FROM_THE_FACTORY = {"LDW": 0, "LWT": MILLION, **LINEARISATION}.items()
+
 
 def converted(digits: int, settings: Mapping[str, int]) -> int:
     """Digits as sent.
@@ -30,11 +32,11 @@ def converted(digits: int, settings: Mapping[str, int]) -> int:
     int
         24 bit at NOV=0, else in parts of NOV.
     """
-    curve = (settings["LDW"], settings["LWT"])
-    if curve != (0, MILLION) or any(settings[name] != own for name, own in LINEARISATION.items()):
+    if not settings.items() >= _AS_FROM_THE_FACTORY:
+        zero, span = settings["LDW"], settings["LWT"]
         part = digits / FACTORY_SPAN
         part = sum(settings[f"LIC{power}"] * part**power for power in range(4))
-        digits = round(FACTORY_SPAN * (part - curve[0]) / (curve[1] - curve[0]))
+        digits = round(FACTORY_SPAN * (part - zero) / (span - zero))
     if settings["TAS"] == 0:
         digits -= settings["TAV"]
     if settings["NOV"]:

@@ -185,18 +185,19 @@ class SimulatedNode(NodeMemory):
         limit = format_.full_scale
         return format_.encode(max(-limit - 1, min(limit, digits)), status)
 
-    def next_streamed(self) -> tuple[float, bytes]:
-        """Time and bytes of the next value sent unasked."""
-        icr = self.settings["ICR"]
-        number = self._last_number + 1
-        return self.signal.sampled_s(number, icr), self.frame(number)
+    @property
+    def next_streamed_s(self) -> float:
+        """When the next value sent unasked is ready."""
+        return self.signal.sampled_s(self._last_number + 1, self.settings["ICR"])
 
-    def streamed(self) -> None:
-        """That value is on its way."""
+    def streamed(self) -> bytes:
+        """The next value sent unasked, which is on its way then."""
         self._last_number += 1
+        frame = self.frame(self._last_number)
         if self.remaining:
             self.remaining -= 1
             self.measuring = self.remaining > 0
+        return frame
 
     def _execute(self, text: str, now_s: float) -> Answer | None:
         match = _COMMAND.match(text)

@@ -10,15 +10,14 @@ from pathlib import Path
 from cdpr8.clock import Clock
 from rig.schedule import prefer_this_thread
 from rig.simulated.bus import SimulatedBus
+from rig.transport import Chunk
 
 MOST_LATENESS_S = 0.002
 """Lateness of this thread beyond which it is the computer's trouble, not to be made up for."""
 
 AWAKE_S = 150e-6
-"""Before an answer is due this thread no longer sleeps: to be woken may take as long."""
-
-STREAM_AWAKE_S = 60e-6
-"""The same for values sent unasked, which nobody waits for; there are eight such threads."""
+"""Before an answer is due this thread no longer sleeps: to be woken may take as long. For values
+sent unasked it does sleep: nobody waits for them, and there are eight such threads."""
 
 STREAM_LOOK_S = 0.005
 """How far ahead values sent unasked are looked for."""
@@ -78,14 +77,18 @@ class PseudoTerminal:
     def _serve(self) -> None:
         # Eight lines of one node each would take a third of a core more, and nobody waits for them.
         prefer_this_thread(real_time=len(self._bus.nodes) > 1)
+        ends, heard = (self._master, self._wake), False
+        pending: deque[Chunk] = deque()
         while True:
             now_s = self._clock.monotonic_s()
-            pending = self._bus.speak(now_s + STREAM_LOOK_S)
+            if not pending or heard:
+                pending = self._bus.speak(now_s + STREAM_LOOK_S)
             while pending and pending[0].last_s <= now_s:
                 chunk = pending.popleft()
                 self._write(chunk.data)
             wait_s = self._wait_s(pending[0].last_s - now_s if pending else None)
-            ready, _, _ = select.select([self._master, self._wake], [], [], wait_s)
+            ready, _, _ = select.select(ends, (), (), wait_s)
+            heard = bool(ready)
             if self._wake in ready:
                 return
             if self._master in ready:
@@ -108,10 +111,10 @@ class PseudoTerminal:
         return max(started_s, now_s - MOST_LATENESS_S)
 
     def _wait_s(self, until_due_s: float | None) -> float | None:
-        streaming = any(node.powered and node.streaming for node in self._bus.nodes)
+        streaming = self._bus.streaming
         if until_due_s is None:
             return STREAM_LOOK_S if streaming else None
-        return max(0.0, until_due_s - (STREAM_AWAKE_S if streaming else AWAKE_S))
+        return max(0.0, until_due_s - (0.0 if streaming else AWAKE_S))
 
     def _write(self, data: bytes) -> None:
         """A line does not wait: what the reader's buffer does not take is lost (overrun)."""

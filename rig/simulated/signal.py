@@ -92,6 +92,9 @@ class NodeSignal:
         self._internal_s = profile.period_s(0) * (1.0 + 1e-6 * crystal.ppm)
         self._first_s = crystal.power_on_s + crystal.phase * self._internal_s
         self._origin_s = math.inf
+        self._periods_s = tuple(
+            self._ratio(icr) * self._internal_s for icr in range(len(profile.rates_per_s))
+        )
         self._blocks: dict[tuple[float, int, int, int], tuple[list[int], list[int]]] = {}
 
     def begin(self, origin_s: float) -> None:
@@ -100,7 +103,7 @@ class NodeSignal:
 
     def period_s(self, icr: int) -> float:
         """True time between two values."""
-        return self._ratio(icr) * self._internal_s
+        return self._periods_s[icr]
 
     def number_at(self, t_s: float, icr: int) -> int:
         """Number of the newest value at a time; 0 is the first."""

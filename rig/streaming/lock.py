@@ -99,27 +99,29 @@ class FrameLock:
 
     def _cut(self, values: list[Framed], faults: list[BadFrameError]) -> bool:
         """Cut off values while they are good; False where more bytes are needed."""
-        length = self._format.length
-        while len(self._data) >= length:
-            raw = self._data[:length]
+        length, data = self._format.length, self._data
+        whole = len(data) - len(data) % length
+        for at in range(0, whole, length):
+            raw = data[at : at + length]
             try:
                 reading = self._decode(raw)
             except BadFrameError as fault:
                 faults.append(fault)
-                self._drop(1)
+                self._drop(at + 1)
                 self.locked = self._follows = False
                 return True
             if self._jumped(reading):
+                self._drop(at)
                 self.locked, self._last = False, None
                 return True
-            if self._in_damaged(length):
+            start = self._start + at
+            if self._damaged and self._in_damaged(start, length):
                 faults.append(BadFrameError("parity error", raw))
-                self._drop(length)
                 self._follows = False
                 continue
-            self._drop(length)
-            values.append(Framed(reading, self._start, self._follows))
+            values.append(Framed(reading, start + length, self._follows))
             self._last, self._follows = reading.digits, True
+        self._drop(whole)
         return False
 
     def _decode(self, raw: bytes) -> Reading:
@@ -128,11 +130,11 @@ class FrameLock:
             raise BadFrameError(f"status byte is {reading.status:02X}", raw)
         return reading
 
-    def _in_damaged(self, length: int) -> bool:
-        """Whether one of the next bytes came with a parity error."""
-        while self._damaged and self._damaged[0][1] <= self._start:
+    def _in_damaged(self, start: int, length: int) -> bool:
+        """Whether one of so many bytes came with a parity error."""
+        while self._damaged and self._damaged[0][1] <= start:
             del self._damaged[0]
-        return bool(self._damaged) and self._damaged[0][0] < self._start + length
+        return bool(self._damaged) and self._damaged[0][0] < start + length
 
     def _jumped(self, reading: Reading) -> bool:
         if self._jump_digits is None or self._last is None:

@@ -119,26 +119,33 @@ class SerialTransport(LineEnd):
             waiting = self._port.in_waiting
         except _LOST as error:
             raise self._lost(error) from None
-        return self._wait(waiting) if waiting else (b"", False)
+        return self._came(self._read, waiting) if waiting else (b"", False)
 
     def _wait(self, count: int) -> tuple[bytes, bool]:
         """At most `count` bytes within `POLL_S`, and whether one of them was damaged."""
+        return self._came(self._read_soon, count)
+
+    def _came(self, read: Callable[[int], bytes], count: int) -> tuple[bytes, bool]:
+        """What a reading gives, and whether one of its bytes was damaged."""
         try:
-            raw = self._read(count)
+            raw = read(count)
         except _LOST as error:
             raise self._lost(error) from None
         if self._marks is None:
             return raw, False
         return self._marks.undo(raw)
 
+    def _read_soon(self, count: int) -> bytes:
+        """At most `count` bytes, where any come within `POLL_S`."""
+        if os.name == "posix" and not select.select((self._port.fileno(),), (), (), POLL_S)[0]:
+            return b""
+        return self._read(count)
+
     def _read(self, count: int) -> bytes:
+        """At most `count` of the bytes that have come."""
         if os.name != "posix":
             return bytes(self._port.read(count))
-        descriptor = self._port.fileno()
-        ready, _, _ = select.select([descriptor], [], [], POLL_S)
-        if not ready:
-            return b""
-        raw = os.read(descriptor, count)
+        raw = os.read(self._port.fileno(), count)
         if not raw:
             raise OSError(errno.EIO, "ready to read, but nothing came")
         return raw
