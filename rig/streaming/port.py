@@ -18,7 +18,7 @@ from rig.confirmation import JUMP_OF_NOMINAL
 from rig.station import Station, Value, check_identity
 from rig.streaming.lock import Framed, FrameLock
 from rig.streaming.node_clock import NodeClock
-from rig.transport import Transport
+from rig.transport import Received, Transport
 
 SILENCE_S = 0.05
 """Silence after ``STP;`` that ends a stream for certain: the next byte is a first one."""
@@ -31,6 +31,10 @@ LONGEST_GAP_S = 1.0
 
 LATE_S = 0.01
 """How late bytes may be noticed: ports are looked at every 7 ms at least."""
+
+LOOKS_TO_TIME = 4
+"""After a start values wait until some came at so many looks: the last bytes of one look may
+be of no value, and tell when those before them came only within some periods."""
 
 JUST = 0.05
 """Of a period: how much late a value may be and still count as on time."""
@@ -69,6 +73,7 @@ class StreamPort:
             csm=1 if rig.bus.checksum or rig.bus.parity == "none" else 0,
         )
         self._lock: FrameLock | None = None
+        self._taken: tuple[Received, float] | None = None
         self.station = self._set_up(zero_mv_per_v)
 
     def start(self) -> None:
@@ -81,6 +86,8 @@ class StreamPort:
         self._lock = FrameLock(station.format, None if station.format.ends_in_crlf else jump)
         self._clock = NodeClock(station.period_s)
         self._number = -1
+        self._looks = 0
+        self._waiting: list[tuple[Framed, int, float]] = []
         self._received = self._last_end = 0
         self.heard_s = self.transport.clock.monotonic_s()
         self._dialogue.tell(message.MEASURE)
@@ -116,29 +123,42 @@ class StreamPort:
         """Whether the alignment is unknown and the stream must be started anew."""
         return self._lock is not None and self._lock.failed
 
+    def listen(self) -> None:
+        """Take what has come, for `poll`: where there are more ports, before any is dealt with."""
+        self._taken = self._listened()
+
     def poll(self) -> tuple[list[Value], list[BadFrameError], int]:
         """Values that have come, bytes that are none, and how many values are missing."""
-        received = self.transport.take()
+        received, now_s = self._taken or self._listened()
+        self._taken = None
         data = received.data
         if not data or self._lock is None:
             self._dialogue.keep(data)
             return [], [], 0
-        now_s = self.transport.clock.monotonic_s()
         self.heard_s = now_s
         self._received += len(data)
         framed, faults = self._lock.feed(data, received.damaged)
         char_s = self.transport.line.char_s
         arrived = [now_s - (self._received - each.end) * char_s for each in framed]
         missing = 0
-        values = []
         for place, (each, arrived_s) in enumerate(zip(framed, arrived, strict=True)):
             if not each.follows and self._clock.known:
                 missing += self._skip(framed, arrived, place)
             self._number += 1
             self._last_end = each.end
             self._clock.add(self._number, arrived_s)
-            values.append((each, self._number, arrived_s))
-        return [self._value(*value) for value in values], faults, missing
+            self._waiting.append((each, self._number, arrived_s))
+        self._looks += bool(framed)
+        return self.settle() if self._looks >= LOOKS_TO_TIME else [], faults, missing
+
+    def settle(self) -> list[Value]:
+        """Values that have come and wait for better times, with those known now."""
+        waiting, self._waiting = self._waiting, []
+        return [self._value(*each) for each in waiting]
+
+    def _listened(self) -> tuple[Received, float]:
+        """What has come, and when it was seen."""
+        return self.transport.take(), self.transport.clock.monotonic_s()
 
     def _skip(self, framed: Sequence[Framed], arrived: Sequence[float], place: int) -> int:
         """Number the first value after a gap by the node's clock; returns how many are missing."""
@@ -157,7 +177,9 @@ class StreamPort:
         between = framed[place].end - length - self._last_end
         by_bytes = max(1, round(between / length))
         if between > 0 and missing - by_bytes <= LATE_S / self._clock.period_s:
-            missing = min(missing, by_bytes)
+            # A clock that is new runs late by some periods, and sees too few missing.
+            new = self._looks < LOOKS_TO_TIME
+            missing = by_bytes if new else min(missing, by_bytes)
         if missing * self._clock.period_s > LONGEST_GAP_S:
             self._clock = NodeClock(self.station.period_s)
             self._number = -1

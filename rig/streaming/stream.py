@@ -1,6 +1,6 @@
 """Eight streams in a recording: what came is taken from every port in turn."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
@@ -62,8 +62,12 @@ class StreamingStream:
         """Look at every port once, then wait a little."""
         now_s = self._clock.monotonic_s()
         over = now_s >= self._span.end_s
+        # All ports are listened to first: what one port's values take to be dealt with would make
+        # the others' look late.
         for port in self._ports:
-            self._serve(port)
+            self._guard(port, self._listen)
+        for port in self._ports:
+            self._guard(port, self._serve)
             if unused := port.unused():
                 self._intake.unused(now_s, unused, port.station.cable)
         if over:  # what came up to the end has been taken
@@ -76,19 +80,28 @@ class StreamingStream:
         self._clock.sleep_until(min(now_s + wait_s, self._span.end_s))
         return True
 
-    def _serve(self, port: StreamPort) -> None:
+    def _guard(self, port: StreamPort, deal: Callable[[StreamPort, float], None]) -> None:
+        """Deal with a port, whose line may be gone."""
         cable = port.station.cable
         now_s = self._clock.monotonic_s()
         try:
-            if not self._quarantine.holds(cable):
-                self._take(port, now_s)
-            elif self._quarantine.due(cable, now_s):
-                self._retry(port)
+            deal(port, now_s)
         except LineLostError as fault:
             if cable not in self._line_lost:
                 self._line_lost[cable] = now_s
                 self._intake.event(now_s, EventKind.LINE_LOST, fault.what, cable)
             self._lose(port, "its line is gone", REOPEN_EVERY_S)
+
+    def _listen(self, port: StreamPort, _: float) -> None:
+        if not self._quarantine.holds(port.station.cable):
+            port.listen()
+
+    def _serve(self, port: StreamPort, now_s: float) -> None:
+        cable = port.station.cable
+        if not self._quarantine.holds(cable):
+            self._take(port, now_s)
+        elif self._quarantine.due(cable, now_s):
+            self._retry(port)
 
     def _take(self, port: StreamPort, now_s: float) -> None:
         cable = port.station.cable
@@ -99,9 +112,7 @@ class StreamingStream:
         if missing:
             self._intake.lose("missing", missing)
             self._intake.event(now_s, EventKind.GAP, f"{missing} values missing", cable)
-        for value in values:
-            if self._span.origin_s <= value.sampled_s <= self._span.end_s:
-                self._judge(port, value)
+        self._hand_on(port, values)
         if port.failed:
             self._forget(port)
             self._intake.event(now_s, EventKind.GAP, "alignment unknown: started anew", cable)
@@ -109,6 +120,11 @@ class StreamingStream:
             port.start()
         elif now_s - port.heard_s > SILENT_S:
             self._lose(port, f"nothing came for {SILENT_S} s", None)
+
+    def _hand_on(self, port: StreamPort, values: Sequence[Value]) -> None:
+        for value in values:
+            if self._span.origin_s <= value.sampled_s <= self._span.end_s:
+                self._judge(port, value)
 
     def _judge(self, port: StreamPort, value: Value) -> None:
         """Without a checksum, a value that jumps waits for the next one to confirm it."""
@@ -120,7 +136,8 @@ class StreamingStream:
             self._intake.value(station, settled, believed)
 
     def _forget(self, port: StreamPort) -> None:
-        """Record a doubted value as what it is: not confirmed."""
+        """Record what waits still, and a doubted value as what it is: not confirmed."""
+        self._hand_on(port, port.settle())
         for value, believed in self._confirmation.forget(port.station.cable):
             self._intake.value(port.station, value, believed)
 

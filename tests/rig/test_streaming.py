@@ -5,6 +5,7 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -33,6 +34,8 @@ from rig.recorder import record
 from rig.simulated.rig import assemble
 from rig.streaming.lock import VALUES_TO_LOCK, FrameLock
 from rig.streaming.node_clock import NodeClock
+from rig.streaming.stream import StreamingStream
+from rig.streams import Span
 from rig.transport import LineLostError, Received, Transport
 from rig.transport.end import Around
 
@@ -175,6 +178,36 @@ def test_a_node_clock_follows_the_earliest_arrivals() -> None:
     settled = np.array(errors[600:])
     assert np.sqrt(np.mean(settled**2)) < 0.2e-3
     assert 1e6 * (clock.period_s / PERIOD_S - 1) == pytest.approx(80, abs=5)
+
+
+class LoggedPort:
+    """A port of one cable that tells when it is listened to and when it is dealt with."""
+
+    failed = False
+    heard_s = math.inf
+
+    def __init__(self, cable: int, log: list[tuple[str, int]]) -> None:
+        self.station = SimpleNamespace(cable=cable)
+        self._log = log
+
+    def listen(self) -> None:
+        self._log.append(("listen", self.station.cable))
+
+    def poll(self) -> tuple[list[object], list[object], int]:
+        self._log.append(("poll", self.station.cable))
+        return [], [], 0
+
+    def unused(self) -> bytes:
+        return b""
+
+
+def test_all_ports_are_listened_to_before_any_is_dealt_with() -> None:
+    # What one port's values take to be dealt with would make the others' look late.
+    log: list[tuple[str, int]] = []
+    ports = [LoggedPort(cable, log) for cable in (1, 2, 3)]
+    stream = StreamingStream(ports, None, Span(0.0, 1.0), virtual_clock())
+    assert stream.step()
+    assert log == [(what, cable) for what in ("listen", "poll") for cable in (1, 2, 3)]
 
 
 def test_ports_must_be_named(rig: Rig) -> None:
