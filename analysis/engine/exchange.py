@@ -29,6 +29,9 @@ NEARLY = 0.95
 """unless it explains this share of what that does: the more there is, the less straight lines are
 to be trusted."""
 
+CLOSE = 60.0
+"""What came as near as this to the best of all, in squared misfit, is in the right places."""
+
 MOST = 2
 """So many rivals are led from one hypothesis."""
 
@@ -84,9 +87,16 @@ def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Exchang
 
 
 def fresh(promised: Sequence[Exchange], led: Sequence[Followed]) -> list[Exchange]:
-    """Those that were not led to the end, the best first; so many that are led at most."""
-    done = {one.names for one in led if one.to_end}
-    return [one for one in promised if one.scored.hypothesis.names not in done][:MOST]
+    """Those to lead, the best first: not what came near to the best of all, nor to the end there.
+
+    What stays far behind may have been in other places than those where it is promised now.
+    """
+    ends = [one for one in led if one.to_end]
+    least = min((cost_of(one) for one in ends), default=0.0)
+    close = {one.names for one in ends if cost_of(one) < least + CLOSE}
+    there = {one.state.hypothesis.key for one in ends if one.state is not None}
+    left = (one for one in promised if one.scored.hypothesis.names not in close)
+    return [one for one in left if one.scored.hypothesis.key not in there][:MOST]
 
 
 def rivals(
