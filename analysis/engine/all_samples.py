@@ -109,20 +109,13 @@ def all_samples_say(
         Samples.
     """
     best = min(led, key=cost_of, default=nothing)
-    form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
-    explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
-    hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
-    allowed = count * max(noise_leaves(refiner.system.bundles), NOISE)
-    unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
+    forms = forms_of(refiner, best, nothing, count)
     likeliest: dict[tuple[str, ...], tuple[float, State, Followed]] = {}
     for one in (*led, nothing):
         state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
         logs = []
-        for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
-            off = min((size * form) ** 2 * explained, hidden) + unexplained
-            noise = 1.0 + off / FORMS
-            unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
-            logs.append(np.log(weight) - unlikely - 0.5 * (one.misfit - best.misfit) / noise)
+        for likely, noise in forms:
+            logs.append(likely - 0.5 * (one.misfit - best.misfit) / noise)
         # No error of form makes parameters likelier that are far from what is known of them.
         strain = 0.5 * float(one.nuisance @ one.nuisance)
         prior = state.hypothesis.log_prior(refiner.candidates)
@@ -134,6 +127,37 @@ def all_samples_say(
         there = refiner.at(state, refiner.directions_of(one.nuisance))
         fitted.append(replace(there, log_score=score, point=one.point, left=one.misfit / count))
     return sorted(fitted, key=lambda one: -one.log_score)
+
+
+def forms_of(
+    refiner: Refiner, best: Followed, nothing: Followed, count: int
+) -> list[tuple[float, float]]:
+    """Sizes of the error of form: how likely each is, as a logarithm, and the noise with it.
+
+    Parameters
+    ----------
+    refiner
+        Of the system.
+    best, nothing, count
+        As for `all_samples_say`.
+
+    Returns
+    -------
+    list of (float, float)
+        Noise is the variance along each direction in which causes are looked for.
+    """
+    form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
+    explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
+    hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
+    allowed = count * max(noise_leaves(refiner.system.bundles), NOISE)
+    unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
+    found = []
+    for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
+        off = min((size * form) ** 2 * explained, hidden) + unexplained
+        noise = 1.0 + off / FORMS
+        unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
+        found.append((float(np.log(weight) - unlikely), float(noise)))
+    return found
 
 
 def cost_of(led: Followed) -> float:

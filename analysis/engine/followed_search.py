@@ -6,6 +6,7 @@ from dataclasses import replace
 from analysis.engine.all_samples import (
     cost_of,
     farthest_first,
+    forms_of,
     through,
 )
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
@@ -158,7 +159,9 @@ class FollowedSearch(Leader):
                 return
             self._placed.add(best.state.hypothesis.key)
             asked = self._faint(replace(best, about=None))
-            for _, one in placed_again(asked, candidates)[:1]:
+            forms = forms_of(self._refiner, best, self._nothing, len(self._samples.shares))
+            _, noise = max(forms)
+            for _, one in placed_again(asked, candidates, noise)[:1]:
                 state = State.of(one, candidates)
                 self._keep(lead_from(self._system, best, state, nuisances_of(asked, one)))
             if cost_of(self._best) < cost_of(best) - WORTH_IT:

@@ -8,6 +8,8 @@ itself once more, in any places.
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from analysis.engine.exchange import Exchange, without
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import ASKS
@@ -21,7 +23,9 @@ def is_placed(candidate: Candidate) -> bool:
     return len(candidate.terms) > 1 and not whole
 
 
-def placed_again(found: Faint, candidates: Mapping[str, Candidate]) -> list[Exchange]:
+def placed_again(
+    found: Faint, candidates: Mapping[str, Candidate], noise: float = 1.0
+) -> list[Exchange]:
     """Hypotheses with one of the causes that are on in other places, the best first.
 
     Parameters
@@ -31,13 +35,18 @@ def placed_again(found: Faint, candidates: Mapping[str, Candidate]) -> list[Exch
         asked.
     candidates
         By name.
+    noise
+        Variance along each direction, the error of form of what is on included: what it leaves has
+        told how large that is.
     """
     state = found.followed.state
+    base = np.maximum(found.problem.base, noise)
+    found = replace(found, problem=replace(found.problem, base=base))
     promised: list[Exchange] = []
     for name, part in () if state is None else state.hypothesis.parts.items():
         if not is_placed(candidates[name]) or (name, 0) not in found.terms:
             continue
-        # Its shapes stay as they are. How right its form is, what is left there has told.
+        # Its shapes stay as they are.
         asked = replace(candidates[name], shapes=(), form_share=0.0)
         known = {**candidates, name: asked}
         screen = without(found, known, name)

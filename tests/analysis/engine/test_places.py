@@ -49,9 +49,10 @@ class _Places:
     nuisances = (Nuisance("b", 2.0, "V"),)
     candidates = (LAW,)
 
-    def __init__(self) -> None:
+    def __init__(self, slight: float = 0.0) -> None:
         noise = NOISE * np.random.default_rng(5).normal(size=len(TIMES_S))
-        seen = NOISE * THERE * (TONES["a"] + TONES["b"]) + noise
+        there = THERE * (TONES["a"] + TONES["b"]) + slight * TONES["c"]
+        seen = NOISE * there + noise
         whole = (Segment(0.0, 1.0, None, 20.0),)
         self.bundles = (
             Bundle(("y",), ("V",), TIMES_S, seen[:, None], np.eye(1) * NOISE**2, whole),
@@ -89,6 +90,14 @@ def test_a_place_that_a_parameter_stood_for_is_found_at_the_end() -> None:
     assert (part.terms, part.shared, part.shapes) == (("size@a", "size@b"), True, {"width": 3.0})
     assert one.values["law", "size@b"] == pytest.approx(THERE, rel=0.02)
     assert nuisances_of(found, one)[0] == pytest.approx(0.0, abs=0.5)
+
+
+def test_what_an_error_of_form_may_be_is_no_other_place() -> None:
+    system = _Places(slight=0.8)
+    found = faint(system, led(0.0, "ab"), [LAW])
+    ((_, one),) = placed_again(found, KNOWN)
+    assert "size@c" in one.hypothesis.parts["law"].terms
+    assert placed_again(found, KNOWN, noise=50.0) == []
 
 
 def test_where_all_is_in_place_nothing_is_promised() -> None:
