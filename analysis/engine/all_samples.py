@@ -16,6 +16,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
+from analysis.engine.way import LEAVES, STRAIN
 from analysis.engine.whiten import noise_leaves
 
 DOUBT = 2.0
@@ -169,6 +170,26 @@ def misfit_at(samples: Samples, nuisance: Array, state: State) -> float:
     """Squared misfit of all samples at a state, ring and all."""
     (found,) = samples.residuals([Followed(nuisance, state).point])
     return float(found @ found)
+
+
+def tells_more(best: Followed, nothing: Followed, shares: Array) -> bool:
+    """Whether what was led explains to the noise the stretch that parameters alone do not.
+
+    It may not be led farther since what is left out beside it shows in a few samples.
+
+    Parameters
+    ----------
+    best
+        What was led farthest.
+    nothing
+        How far parameters alone led.
+    shares
+        Of the time, at which samples lie, shape (n,).
+    """
+    share, alone = nothing.reached
+    count = int((shares <= share).sum())
+    most = count + LEAVES * float(np.sqrt(2.0 * count)) + STRAIN
+    return best.costs.get(share, np.inf) < most < alone
 
 
 def farthest_first(led: Followed) -> tuple[float, float]:

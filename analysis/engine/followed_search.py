@@ -7,6 +7,7 @@ from analysis.engine.all_samples import (
     cost_of,
     farthest_first,
     forms_of,
+    tells_more,
     through,
 )
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
@@ -63,7 +64,12 @@ class FollowedSearch(Leader):
     """
 
     def follow(
-        self, hypotheses: Sequence[Fitted], others: Sequence[Fitted], *, guessed: bool = False
+        self,
+        hypotheses: Sequence[Fitted],
+        others: Sequence[Fitted],
+        *,
+        guessed: bool = False,
+        seen: bool = False,
     ) -> None:
         """Lead hypotheses to the ring's phase.
 
@@ -75,6 +81,8 @@ class FollowedSearch(Leader):
             Single causes, the best first: laws of the same things as what comes far are tried too.
         guessed
             In which places they are was told over a short stretch.
+        seen
+            They are likely by lines as well: what explains but a stretch is looked beside.
         """
         for number, one in enumerate(self._fresh(hypotheses)):
             if number > 0 and (self._effort > self._most or self._is_kin(one)):
@@ -82,8 +90,9 @@ class FollowedSearch(Leader):
             self._lead(one.point.nuisance, one.state, near=self._near)
         if not self._led:
             return
-        nowhere = self._best.share < self._nothing.share + EARLY and not self._best.to_end
-        if nowhere and not self._near:
+        farther = self._best.to_end or self._best.share >= self._nothing.share + EARLY
+        tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
+        if not (self._near or farther or tells):
             return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
         for one in self._fresh(kin_of(self._best, self._led, others, self._refiner.candidates)):

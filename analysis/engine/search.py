@@ -104,14 +104,14 @@ def _by_lines(
     singles = finder.singles(null)
     alone = [one for one in finder.ranked() if one.hypothesis.parts]
     if led is not None:
-        led.search.follow(_to_follow(null, led.single, alone), [*alone, *led.single])
+        led.search.follow(_to_follow(null, led.single, alone), [*alone, *led.single], seen=True)
     if led is None or not led.search.arrived:
         finder.sets(most_causes)
     ranked = finder.ranked()
     if led is None:
         return Found(singles, ranked, faint=False)
     if not led.search.arrived:
-        led.search.follow(_to_follow(null, (), ranked), alone)
+        led.search.follow(_to_follow(null, (), ranked), alone, seen=True)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
 

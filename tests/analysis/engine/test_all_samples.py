@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.all_samples import all_samples_say
+from analysis.engine.all_samples import all_samples_say, tells_more
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -37,6 +37,25 @@ def test_what_nothing_explains_makes_a_cause_that_explains_little_of_it_less_sur
     ahead = first.log_score - second.log_score
     assert bool(first.hypothesis.parts)
     assert (ahead > 20.0) == sure
+
+
+@pytest.mark.parametrize(
+    ("share", "cost", "alone", "more"),
+    [
+        (0.1, 150.0, 900.0, True),
+        (0.1, 400.0, 900.0, False),
+        (0.1, 100.0, 150.0, False),
+        (0.05, 50.0, 900.0, False),
+    ],
+    ids=["to the noise", "closer, far from the noise", "parameters do too", "not as far"],
+)
+def test_a_law_that_is_led_no_farther_tells_by_what_it_explains_to_there(
+    share: float, cost: float, alone: float, more: bool
+) -> None:
+    shares = np.linspace(0.001, 1.0, COUNT)
+    law = Followed(np.zeros(1), state_of(DAMPING, 0.01), costs={share: cost})
+    nothing = Followed(np.zeros(1), None, costs={0.1: alone})
+    assert tells_more(law, nothing, shares) == more
 
 
 def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refiner) -> None:
