@@ -11,6 +11,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.judge import NOISE
+from analysis.engine.part import records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
@@ -25,6 +26,9 @@ DOUBT = 2.0
 CONTENDS, NO_BETTER = 100.0, 10.0
 """What is no farther behind the best, in squared misfit, is led through with differences of its
 own, unless what is on there without one of its causes is as good to within this."""
+
+SEVERAL = 3
+"""By growing windows so many recordings take too long."""
 
 
 def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
@@ -45,16 +49,38 @@ def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
         if not asked:
             break
         place = min(asked, key=lambda k: cost_of(found[k]))
-        found[place] = through(system, found[place])
+        best = min(found, key=cost_of)
+        # What came from another law's parameters may have come to a hollow beside its valley.
+        anew = len(records_of(system)) < SEVERAL and _kinds(found[place]) != _kinds(best)
+        found[place] = through(system, found[place], anew=anew)
     return found
 
 
-def through(system: System, one: Followed) -> Followed:
-    """A hypothesis led on with what nuisances do about itself, where that was lent."""
+def through(system: System, one: Followed, *, anew: bool = False) -> Followed:
+    """A hypothesis led with what nuisances do about itself, where that was lent.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    one
+        The hypothesis.
+    anew
+        By growing windows, from the likeliest parameters; else from where it is.
+    """
     if not one.borrowed:
         return one
-    led = follow_ring(system, one.nuisance, one.state, everything=True, near=True)
+    start = np.zeros_like(one.nuisance) if anew else one.nuisance
+    led = follow_ring(system, start, one.state, everything=True, near=not anew)
     return replace(led if cost_of(led) < cost_of(one) else one, borrowed=False)
+
+
+def _kinds(one: Followed) -> list[str]:
+    """Families of what is on."""
+    if one.state is None:
+        return []
+    known = one.state.candidates
+    return sorted(known[name].family or name for name in one.names)
 
 
 def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) -> Followed:

@@ -117,8 +117,10 @@ def rivals(
         What to lead.
     """
     for _, one in promised:
-        state = State.of(one, candidates)
-        yield lead_from(system, found.followed, state, nuisances_of(found, one))
+        state, law = State.of(one, candidates), found.followed
+        # Straight lines go far along what tells little, and may miss the valley.
+        starts = nuisances_of(found, one), law.nuisance
+        yield min((lead_from(system, law, state, start) for start in starts), key=cost_of)
 
 
 def plainest(

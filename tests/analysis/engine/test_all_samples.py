@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.engine import all_samples
 from analysis.engine.all_samples import all_samples_say, tells_more
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
@@ -13,6 +14,7 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
+from analysis.engine.system import Array, System
 from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
 
 DAMPED = LetGo(ring(0.0, 0.2, 0.0, 0.0))
@@ -56,6 +58,25 @@ def test_a_law_that_is_led_no_farther_tells_by_what_it_explains_to_there(
     law = Followed(np.zeros(1), state_of(DAMPING, 0.01), costs={share: cost})
     nothing = Followed(np.zeros(1), None, costs={0.1: alone})
     assert tells_more(law, nothing, shares) == more
+
+
+@pytest.mark.parametrize("kin", [False, True])
+def test_what_came_from_parameters_of_another_kind_of_law_is_led_anew(
+    monkeypatch: pytest.MonkeyPatch, kin: bool
+) -> None:
+    begun: list[tuple[float, bool]] = []
+
+    def spied(system: System, nuisance: Array, state: State, **how: bool) -> Followed:
+        begun.append((float(nuisance[0]), how["near"]))
+        return follow_ring(system, nuisance, state, **how)
+
+    monkeypatch.setattr(all_samples, "follow_ring", spied)
+    law = Followed(np.array([0.1]), state_of(DAMPING, 0.1), misfit=2.0 * COUNT, borrowed=True)
+    other = state_of(DAMPING, 0.1) if kin else state_of(STEP, 0.1, moment=9.0)
+    best = Followed(np.zeros(1), other, misfit=law.misfit - 50.0)
+    led, _ = all_samples.led_through(DAMPED, [law, best])
+    assert begun == [(0.1, True) if kin else (0.0, False)]
+    assert led.misfit < 1.1 * COUNT
 
 
 def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refiner) -> None:
