@@ -6,8 +6,11 @@ import numpy as np
 
 from model.library.effect import Acts, Effect, Parameter
 
-FLOOR = 0.1
-"""The law is not followed below this share of the pretension, where the parabola is none."""
+STEPS = 5
+"""Newton's, from above: the parabola's pull is then exact to rounding, however low it is."""
+
+TINY = 1e-12
+"""N, so that a cable that weighs nothing divides nothing by nothing."""
 
 
 def pull(
@@ -20,17 +23,19 @@ def pull(
     gravity: Any,
     direction_z: Any,
 ) -> Any:
-    """Delta T of T = T_e + k [s(T) - s(T_0)], s = (w L)^2 L / (24 T^2), by two Newton steps."""
+    """Delta T of T = T_e + k [s(T) - s(T_0)], s = (w L)^2 L / (24 T^2).
+
+    T^2 (T - a) = k s T^2 has one positive root: a cable hangs through rather than pushes.
+    """
     weight = weight_share * line_density * gravity * length
     across = weight * weight * (1.0 - direction_z * direction_z)
     sag = stiffness * across * length / 24.0
-    floor = FLOOR * pretension
-    taut = np.sqrt(elastic * elastic + floor * floor)
-    at_rest = sag / (pretension * pretension + floor * floor)
-    first = (sag / (taut * taut) - at_rest) / (1.0 + 2.0 * sag / (taut * taut * taut))
-    again = np.sqrt((elastic + first) * (elastic + first) + floor * floor)
-    short = sag / (again * again) - at_rest - first
-    return first + short / (1.0 + 2.0 * sag / (again * again * again))
+    free = elastic - sag / (pretension * pretension)
+    # Above the root: where T = a + (k s T^2)^(1/3), the left side is the larger.
+    tension = 0.5 * (free + np.abs(free)) + sag ** (1.0 / 3.0) + TINY
+    for _ in range(STEPS):
+        tension -= (tension * (tension - free) - sag / tension) / (3.0 * tension - 2.0 * free)
+    return tension - elastic
 
 
 EFFECT = Effect(

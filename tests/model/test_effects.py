@@ -8,6 +8,7 @@ from cdpr8.rigfile import Excitation, Rig
 from cdpr8.rigfile.schema import CellPlace
 from model import Machine, Simulation, Task, observe, simulate, simulate_many
 from model.effects import ActiveEffect, Effect, library
+from model.effects.cable_sag import pull as sag_pull
 from model.library.discovery import kernel_effects
 from model.library.effect import Acts
 from model.motion import RampedSine
@@ -243,6 +244,21 @@ def test_sag_goes_with_the_square_of_the_weight() -> None:
     effect = library()["cable_sag"]
     light, heavy = (cable_response(effect, {"weight_share": one}) for one in (0.1, 0.2))
     assert heavy.size[1] == pytest.approx(4.0 * light.size[1], rel=1e-2)
+
+
+@pytest.mark.parametrize("elastic_n", [-5.0, 0.0, 1.0, 3.0, 8.0, 30.0])
+def test_sag_is_the_parabola_however_low_the_pull(elastic_n: float) -> None:
+    at_rest_n, stiffness, length, weight_n = 17.0, 3000.0, 3.0, 0.2
+    added = sag_pull(1.0, elastic_n, at_rest_n, stiffness, length, weight_n / length, 1.0, 0.0)
+    tension = elastic_n + added
+    shorter = weight_n**2 * length / 24.0 * (tension**-2.0 - at_rest_n**-2.0)
+    assert tension > 0.0
+    assert tension == pytest.approx(elastic_n + stiffness * shorter, abs=1e-6)
+
+
+def test_a_cable_that_weighs_nothing_does_not_push() -> None:
+    assert sag_pull(0.0, -5.0, 17.0, 3000.0, 3.0, 0.1, 1.0, 0.0) == pytest.approx(5.0)
+    assert sag_pull(0.0, 5.0, 17.0, 3000.0, 3.0, 0.1, 1.0, 0.0) == pytest.approx(0.0)
 
 
 def test_creep_drifts_one_way() -> None:
