@@ -12,10 +12,12 @@ from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
+from analysis.engine.state import State
 from analysis.engine.system import Array, System
 
 WORTH_FOLLOWING = 8.0
@@ -23,6 +25,10 @@ WORTH_FOLLOWING = 8.0
 
 ABREAST, MOST_ABREAST = 12.0, 4
 """Of causes that are faint, so many that are no farther behind the first are led to the phase."""
+
+MOST_OF_IT, BENT = 0.5, 25.0
+"""Where parameters alone went past this share of the time, those of a kind whose squares come to
+more than this, in sigmas, are led free of what is known of them."""
 
 
 class Found(NamedTuple):
@@ -102,6 +108,8 @@ def by_ring(
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else single[:1]
+    if not near:
+        first += _bent(refiner, nothing, at)
     led.follow(first, single, guessed=about.followed.telling < 1.0)
     if near or led.arrived:
         rung = led.fitted()
@@ -114,6 +122,39 @@ def _standing(system: System, nuisance: Array) -> Followed:
     at = Followed(nuisance, None, share=0.0)
     (found,) = Samples(system, everything=True).residuals([at.point])
     return replace(at, misfit=float(found @ found), left=float(np.mean(found**2)))
+
+
+def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
+    """The parameters that were bent most where alone they went far, free of what is known of them.
+
+    Held to that, they may have taken a wrong turn that only they can be led past, all of a kind.
+
+    Parameters
+    ----------
+    refiner
+        Makes a hypothesis of them.
+    nothing
+        How far parameters alone led.
+    at
+        From where they were led, in sigmas: what is bent begins at nothing there.
+    """
+    if nothing.share < MOST_OF_IT:
+        return []
+    of: dict[str, list[int]] = {}
+    for i, one in enumerate(refiner.system.nuisances):
+        if one.cause in refiner.candidates and one.term is not None:
+            of.setdefault(one.cause, []).append(i)
+    strain = {name: float(np.sum(nothing.nuisance[places] ** 2)) for name, places in of.items()}
+    name = max(strain, key=lambda one: strain[one], default="")
+    if not name or strain[name] < BENT:
+        return []
+    numbers = [(refiner.system.nuisances[i], nothing.nuisance[i]) for i in of[name]]
+    values = {(name, one.term or ""): float(z * one.sigma) for one, z in numbers}
+    hypothesis = Hypothesis({name: Part(tuple(one.term or "" for one, _ in numbers))})
+    state, start = State.at(hypothesis, values, refiner.candidates), at.copy()
+    start[of[name]] = 0.0
+    fitted = refiner.at(state, refiner.directions_of(start))
+    return [replace(fitted, point=Followed(start, state).point)]
 
 
 def _abreast(single: Sequence[Fitted]) -> list[Fitted]:

@@ -1,0 +1,39 @@
+"""What is led to the ring's phase first."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.engine.by_ring import _bent
+from analysis.engine.followed import Followed
+from analysis.engine.look import look
+from analysis.engine.refine import Refiner
+from analysis.engine.system import Candidate, Nuisance, Term
+from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring
+
+TONE = Candidate("tone", "tone", "parameter", (Term("share", "share", "1", "", -1.0, 1.0, SIGMA),))
+
+
+class Tuned(LetGo):
+    """An oscillator of which the tone may be off by more than is known of it."""
+
+    nuisances = (Nuisance("tone", SIGMA, "1", cause="tone", term="share"),)
+    candidates = (DAMPING, STEP, TONE)
+
+
+@pytest.mark.parametrize(
+    ("sigmas", "share", "asked"), [(7.0, 0.9, True), (3.0, 0.9, False), (7.0, 0.2, False)]
+)
+def test_parameters_that_were_bent_on_a_long_way_are_led_free_of_what_is_known_of_them(
+    sigmas: float, share: float, asked: bool
+) -> None:
+    system = Tuned(ring(0.0, 0.0, 0.0, 0.0))
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    nothing = replace(Followed(np.array([sigmas]), None), share=share)
+    found = _bent(refiner, nothing, np.array([0.5]))
+    assert [one.hypothesis.names for one in found] == ([("tone",)] if asked else [])
+    for one in found:
+        assert one.values["tone", "share"] == pytest.approx(sigmas * SIGMA)
+        assert one.point.nuisance[0] == 0.0
