@@ -137,26 +137,26 @@ class BroadcastBus(Bus):
             self._failed(station)
             raise
         self._failures = 0
-        _, held_up_s = self._answers.began(station, self._asked_s, received)
-        if self._proof_due:
-            # What held up the first answer may have held up the trigger.
-            self._held_up_s = held_up_s
-        self._proof_due = False
-        self._heard = True
         # A value that may be of an earlier trigger has no known time, nor has one whose trigger was
         # written who knows when.
         period_s = station.period_s
         timed = station.address not in self._unsure and self._took_s <= period_s
         self._unsure.discard(station.address)
-        value = Value(
+        asked_s, trigger_s, heard_s = self._asked_s, self._trigger_s, self._heard_s
+        is_proof, self._proof_due, self._heard = self._proof_due, False, True
+        # Whatever can wait is done while the next answer is on the line.
+        self._go_on(following)
+        _, held_up_s = self._answers.began(station, asked_s, received)
+        if is_proof:
+            # What held up the first answer may have held up the trigger.
+            self._held_up_s = held_up_s
+        return Value(
             reading,
-            self._trigger_s,
+            trigger_s,
             received.last_byte_s,
-            self._heard_s + period_s / 2.0,
+            heard_s + period_s / 2.0,
             timed=timed and self._held_up_s <= max(period_s, UNTIMED_S),
         )
-        self._go_on(following)
-        return value
 
     def _failed(self, station: Station) -> None:
         self._unsure.add(station.address)

@@ -5,6 +5,7 @@ import select
 import threading
 import tty
 from collections import deque
+from collections.abc import Sequence
 from pathlib import Path
 
 from cdpr8.clock import Clock
@@ -18,6 +19,9 @@ MOST_LATENESS_S = 0.002
 AWAKE_S = 150e-6
 """Before an answer is due this thread no longer sleeps: to be woken may take as long. For values
 sent unasked it does sleep: nobody waits for them, and there are eight such threads."""
+
+WRITE_S = 6e-6
+"""How long it takes this thread to write, which no line does: so much earlier it begins."""
 
 STREAM_LOOK_S = 0.005
 """How far ahead values sent unasked are looked for."""
@@ -77,23 +81,28 @@ class PseudoTerminal:
     def _serve(self) -> None:
         # Eight lines of one node each would take a third of a core more, and nobody waits for them.
         prefer_this_thread(real_time=len(self._bus.nodes) > 1)
-        ends, heard = (self._master, self._wake), False
+        ends = (self._master, self._wake)
         pending: deque[Chunk] = deque()
+        streaming = self._bus.streaming
         while True:
-            now_s = self._clock.monotonic_s()
-            if not pending or heard:
-                pending = self._bus.speak(now_s + STREAM_LOOK_S)
-            while pending and pending[0].last_s <= now_s:
-                chunk = pending.popleft()
-                self._write(chunk.data)
-            wait_s = self._wait_s(pending[0].last_s - now_s if pending else None)
-            ready, _, _ = select.select(ends, (), (), wait_s)
-            heard = bool(ready)
+            # What can be done beforehand is: who reads what is written waits for this thread to
+            # sleep again, as Python runs one thread at a time.
+            while pending and pending[0].last_s - WRITE_S <= self._clock.monotonic_s():
+                self._write(pending.popleft().data)
+            if streaming and not pending:
+                pending, streaming = self._spoken()
+            ready, _, _ = select.select(ends, (), (), self._wait_s(pending, streaming))
             if self._wake in ready:
                 return
             if self._master in ready:
                 data = os.read(self._master, 4096)
                 self._bus.hear(data, self._started_s())
+                pending, streaming = self._spoken()
+
+    def _spoken(self) -> tuple[deque[Chunk], bool]:
+        """What the bus sends soon, and whether it will send more unasked."""
+        pending = self._bus.speak(self._clock.monotonic_s() + STREAM_LOOK_S)
+        return pending, self._bus.streaming
 
     def written(self, now_s: float) -> None:
         """Note when the master hands bytes over, before it does."""
@@ -110,10 +119,10 @@ class PseudoTerminal:
             started_s = min(started_s, self._writes.popleft())
         return max(started_s, now_s - MOST_LATENESS_S)
 
-    def _wait_s(self, until_due_s: float | None) -> float | None:
-        streaming = self._bus.streaming
-        if until_due_s is None:
+    def _wait_s(self, pending: Sequence[Chunk], streaming: bool) -> float | None:
+        if not pending:
             return STREAM_LOOK_S if streaming else None
+        until_due_s = pending[0].last_s - WRITE_S - self._clock.monotonic_s()
         return max(0.0, until_due_s - (0.0 if streaming else AWAKE_S))
 
     def _write(self, data: bytes) -> None:

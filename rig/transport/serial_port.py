@@ -1,6 +1,7 @@
 """A serial port or a pseudo-terminal, through pyserial."""
 
 import errno
+import math
 import os
 import select
 import sys
@@ -17,6 +18,9 @@ from rig.transport.parity_marks import ParityMarks
 
 if TYPE_CHECKING:
     import serial
+
+MOST_READ = 256
+"""How much one read takes at most where an answer is waited for."""
 
 POLL_S = 0.005
 """How long one read of the port may block: deadlines are kept to within this."""
@@ -54,6 +58,8 @@ class SerialTransport(LineEnd):
         self.on_write: Callable[[float], None] | None = None
         self._port = port
         self._marks = marks
+        # What was read beyond what was asked for, whether some of it was damaged, and when.
+        self._beyond, self._beyond_damaged, self._read_s = b"", False, -math.inf
 
     @property
     def marks_parity_errors(self) -> bool:
@@ -75,27 +81,35 @@ class SerialTransport(LineEnd):
 
     def read(self, count: int, deadline_s: float) -> Received:
         """Exactly `count` bytes, or what has come by `deadline_s`."""
-        data = b""
-        damaged = False
-        while True:
-            chunk, chunk_damaged = self._wait(count - len(data))
+        data, damaged = self._kept()
+        last_s = self._read_s
+        while len(data) < count:
+            # All that is there: what else has come is known then, and need not be asked for.
+            chunk, chunk_damaged = self._wait(MOST_READ)
+            now_s = self.clock.monotonic_s()
             if chunk:
                 data += chunk
                 damaged |= chunk_damaged
-                last_s = self.clock.monotonic_s()
-                if len(data) == count:
-                    return Received(data, last_s, damaged)
-            if (now_s := self.clock.monotonic_s()) >= deadline_s:
+                self._read_s = last_s = now_s
+            if now_s >= deadline_s and len(data) < count:
                 return Received(data, last_s if data else now_s, damaged)
+        self._beyond, self._beyond_damaged = data[count:], damaged
+        return Received(data[:count], last_s, damaged)
 
     def take(self) -> Received:
         """What has come and was not read."""
-        data, damaged = self._waiting()
-        return Received(data, self.clock.monotonic_s(), damaged)
+        data, damaged = self._kept()
+        more, more_damaged = self._waiting()
+        return Received(data + more, self.clock.monotonic_s(), damaged or more_damaged)
 
     def discard(self) -> bytes:
-        """The bytes of `take`, without its time: this comes before each request."""
-        return self._waiting()[0]
+        """The bytes of `take`: this comes before each request, and the line waits for it.
+
+        Where all that had come was read less than a character's time ago, it is not asked again.
+        """
+        just_read = self.clock.monotonic_s() - self._read_s < self.line.char_s
+        data, _ = self._kept()
+        return data if just_read else data + self._waiting()[0]
 
     def reopen(self) -> None:
         """Open the port of the same name again.
@@ -106,12 +120,20 @@ class SerialTransport(LineEnd):
             It is not there yet, or refuses the settings.
         """
         self.close()
+        self._kept()
+        self._read_s = -math.inf
         self._port, self._marks = _open(self.name, self.line)
 
     def close(self) -> None:
         """Close the port."""
         with suppress(*_LOST):
             self._port.close()
+
+    def _kept(self) -> tuple[bytes, bool]:
+        """What was read beyond what was asked for, given away, and whether it was damaged."""
+        data, damaged = self._beyond, self._beyond_damaged
+        self._beyond, self._beyond_damaged = b"", False
+        return data, damaged
 
     def _waiting(self) -> tuple[bytes, bool]:
         # Asked, not only read: a port that is gone reads as an empty one.

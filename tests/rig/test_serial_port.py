@@ -70,6 +70,26 @@ def test_a_read_ends_at_its_deadline_with_what_came(pty: tuple[int, str]) -> Non
     transport.close()
 
 
+def test_what_came_behind_an_answer_is_kept_for_who_reads_next(pty: tuple[int, str]) -> None:
+    master, path = pty
+    clock = RealClock()
+    transport = open_serial_port(path, LINE, clock)
+    for after in ("read", "take", "discard"):
+        os.write(master, b"answerstray")
+        assert transport.read(6, clock.monotonic_s() + 1.0).data == b"answer"
+        if after == "read":
+            assert transport.read(5, clock.monotonic_s() + 1.0).data == b"stray"
+        elif after == "take":
+            assert transport.take().data == b"stray"
+        else:
+            assert transport.discard() == b"stray"
+        assert transport.discard() == b""
+    os.write(master, b"late")
+    clock.sleep_until(clock.monotonic_s() + 0.01)
+    assert transport.discard() == b"late"
+    transport.close()
+
+
 def test_a_pseudo_terminal_can_be_opened_again_with_parity_set(pty: tuple[int, str]) -> None:
     # The kernel drops parity on a pty and reports EINVAL on every second open that asks for it.
     _, path = pty
