@@ -122,7 +122,7 @@ class PseudoTerminal:
     def _wait_s(self, pending: Sequence[Chunk], streaming: bool) -> float | None:
         if not pending:
             return STREAM_LOOK_S if streaming else None
-        until_due_s = pending[0].last_s - WRITE_S - self._clock.monotonic_s()
+        until_due_s = pending[0].last_s - self._clock.monotonic_s()
         return max(0.0, until_due_s - (0.0 if streaming else AWAKE_S))
 
     def _write(self, data: bytes) -> None:
