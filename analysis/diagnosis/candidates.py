@@ -38,7 +38,7 @@ class Policy:
     form_share: float | None = None
 
 
-BRISTLE_LOSS = {"bristle_loss_s": (5e-4,)}
+BRISTLE_LOSS: dict[str, tuple[float, ...]] = {"bristle_loss_s": (5e-4,)}
 
 POLICIES: dict[str, Policy] = {
     "anchor_play": Policy(shapes={"hold_n": (0.5,)}, form_share=0.3),
@@ -54,7 +54,7 @@ POLICIES: dict[str, Policy] = {
     "frame_compliance": Policy(shapes={"frame_hz": (25.0,), "frame_loss": (0.03,)}),
     "pulley_coulomb": Policy(shapes={"presliding_m": (5e-5,)} | BRISTLE_LOSS),
     "pulley_capstan": Policy(shapes={"presliding_m": (5e-5,)} | BRISTLE_LOSS),
-    "pulley_presliding": Policy(shapes={"presliding_m": (6e-4,)} | BRISTLE_LOSS),
+    "pulley_presliding": Policy(shapes={"presliding_m": (6e-4, 2.4e-3)} | BRISTLE_LOSS),
     "pulley_stribeck": Policy(
         shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,), "presliding_m": (5e-5,)}
         | BRISTLE_LOSS

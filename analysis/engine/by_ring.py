@@ -27,8 +27,8 @@ ABREAST, MOST_ABREAST = 12.0, 4
 """Of causes that are faint, so many that are no farther behind the first are led to the phase."""
 
 MOST_OF_IT, BENT = 0.5, 25.0
-"""Where parameters alone went past this share of the time, those of a kind whose squares come to
-more than this, in sigmas, are led free of what is known of them."""
+"""Where parameters alone went past this share of the time, and lost the ring, those of a kind whose
+squares come to more than this, in sigmas, are led free of what is known of them."""
 
 
 class Found(NamedTuple):
@@ -138,7 +138,7 @@ def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
     at
         From where they were led, in sigmas: what is bent begins at nothing there.
     """
-    if nothing.share < MOST_OF_IT:
+    if not MOST_OF_IT < nothing.share < 1.0:
         return []
     of: dict[str, list[int]] = {}
     for i, one in enumerate(refiner.system.nuisances):

@@ -19,6 +19,7 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
 from analysis.engine.system import Array, Candidate, Point, Setting, System
 from analysis.engine.variance import SPREAD
+from analysis.engine.whiten import noise_leaves
 
 SMALL = 0.03
 """Of the size that a term is screened at, what tells how it changes the samples."""
@@ -118,7 +119,8 @@ def faint(
     changes = np.array(rows).reshape(-1, len(here)) / np.array(scales)[:, None]
     changes = np.concatenate([known, changes])
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
-    inside, residual_inside, noise = _compressed(changes, here)
+    allowed = noise_leaves(system.bundles)
+    inside, residual_inside, noise = _compressed(changes, here, allowed)
     size = len(residual_inside)
     nuisance = inside[:, :count]
     numbers_do = nuisance / [one.sigma for one in system.nuisances]
@@ -167,8 +169,17 @@ def _terms(
     return terms
 
 
-def _compressed(changes: Array, residual: Array) -> tuple[Array, Array, float]:
-    """Changes and residual, shapes (k, n) and (n,), in the directions that the changes span.
+def _compressed(
+    changes: Array, residual: Array, allowed: float = 1.0
+) -> tuple[Array, Array, float]:
+    """Changes and residual, in the directions that the changes span.
+
+    Parameters
+    ----------
+    changes, residual
+        Shapes (k, n) and (n,).
+    allowed
+        What noise may leave of a squared sample, on average: its variance may be known from few.
 
     Returns
     -------
@@ -185,8 +196,8 @@ def _compressed(changes: Array, residual: Array) -> tuple[Array, Array, float]:
     residual_inside = (vectors.T @ (changes @ residual / norms)) / roots
     free = max(len(residual) - len(roots), 1)
     left = float(residual @ residual - residual_inside @ residual_inside) / free
-    spread = UNEXPLAINED * max(left - 1.0, 0.0) * len(residual) / len(roots)
-    return inside, residual_inside, 1.0 + spread
+    spread = UNEXPLAINED * max(left - allowed, 0.0) * len(residual) / len(roots)
+    return inside, residual_inside, max(min(left, allowed), 1.0) + spread
 
 
 def _labels(size: int) -> Labels:

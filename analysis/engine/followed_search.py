@@ -38,7 +38,7 @@ share of the time, the ring tells nothing of what is left out."""
 
 EXPLAINS = 0.05
 """Beside a law that was led to the end, one cause more is tried where it promises to explain this
-share of what that leaves."""
+share of what that leaves beyond noise."""
 
 WORTH_IT = 30.0
 """Where it then does no better than this, in squared misfit, what it is, or may be without, is not

@@ -23,9 +23,10 @@ class Tuned(LetGo):
 
 
 @pytest.mark.parametrize(
-    ("sigmas", "share", "asked"), [(7.0, 0.9, True), (3.0, 0.9, False), (7.0, 0.2, False)]
+    ("sigmas", "share", "asked"),
+    [(7.0, 0.9, True), (3.0, 0.9, False), (7.0, 0.2, False), (7.0, 1.0, False)],
 )
-def test_parameters_that_were_bent_on_a_long_way_are_led_free_of_what_is_known_of_them(
+def test_parameters_that_were_bent_on_a_long_way_and_lost_are_led_free_of_what_is_known_of_them(
     sigmas: float, share: float, asked: bool
 ) -> None:
     system = Tuned(ring(0.0, 0.0, 0.0, 0.0))

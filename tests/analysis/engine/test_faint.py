@@ -26,3 +26,13 @@ def test_what_nothing_spans_makes_everything_less_certain() -> None:
     _, _, quiet = _compressed(changes, noise)
     _, _, loud = _compressed(changes, 2.0 * noise)
     assert loud > 10.0 * quiet
+
+
+def test_noise_that_is_known_from_few_samples_is_as_large_as_it_shows_to_be() -> None:
+    generator = np.random.default_rng(5)
+    changes = generator.normal(size=(5, 2000))
+    residual = 1.1 * generator.normal(size=2000)
+    _, _, unsure = _compressed(changes, residual, allowed=1.3)
+    assert unsure == pytest.approx(1.21, abs=0.1)
+    _, _, beyond = _compressed(changes, residual, allowed=1.05)
+    assert beyond > 3.0 * unsure, "what noise does not allow may lie in any direction"
