@@ -11,7 +11,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.judge import NOISE
-from analysis.engine.part import records_of
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
@@ -26,9 +26,6 @@ DOUBT = 2.0
 CONTENDS, NO_BETTER = 100.0, 10.0
 """What is no farther behind the best, in squared misfit, is led through with differences of its
 own, unless what is on there without one of its causes is as good to within this."""
-
-SEVERAL = 3
-"""By growing windows so many recordings take too long."""
 
 
 def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:

@@ -87,6 +87,18 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     explains
         Share of what is left beyond noise, as the score counts it, that it must promise to explain.
     """
+    _, best = _promises(found, refiner, explains)
+    return best
+
+
+def most_promised(found: Faint, refiner: Refiner) -> float:
+    """By how much the score is promised to rise at most by one cause more."""
+    nothing, best = _promises(found, refiner, 0.0)
+    return max((one.log_score for one in best), default=-np.inf) - nothing
+
+
+def _promises(found: Faint, refiner: Refiner, explains: float) -> tuple[float, list[Scored]]:
+    """The score of what is on, and `one_more`."""
     asked = {name for name, _ in found.terms}
     beside = others_beside(refiner, found.followed)
     chosen = {one.name: one for one in beside if one.name in asked}
@@ -94,16 +106,10 @@ def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scor
     nothing = screen.null().log_score
     least = nothing + ASKS + explains * _beyond_noise(found)
     best = [one for one in _best(screen, chosen, screen.on) if one.log_score > least]
-    if found.followed.telling == 1.0:
-        return best
-    simpler = (_simpler(screen, one, nothing) for one in best)
-    return sorted(simpler, key=lambda one: -one.log_score)
-
-
-def most_promised(found: Faint, refiner: Refiner) -> float:
-    """By how much the score is promised to rise at most by one cause more."""
-    first = max((one.log_score for one in one_more(found, refiner)), default=-np.inf)
-    return float(first - _about(found, refiner).null().log_score)
+    if found.followed.telling < 1.0:
+        simpler = (_simpler(screen, one, nothing) for one in best)
+        best = sorted(simpler, key=lambda one: -one.log_score)
+    return nothing, best
 
 
 def _about(found: Faint, refiner: Refiner) -> Screen:

@@ -8,6 +8,9 @@ import numpy as np
 
 from analysis.engine.system import Array, Bundle, Candidate, Nuisance, Point, Prediction, System
 
+SEVERAL = 3
+"""So many recordings and more are led one after the other: all at once takes too long."""
+
 
 class Part:
     """Some recordings of a system, with the nuisances that move anything there.

@@ -20,9 +20,6 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.system import Array, System
 
-PILOTS_FROM = 3
-"""From so many recordings on one leads the way."""
-
 CHAINS, PILOTS = 2, 3
 """So many are tried to begin with where nothing is left out, and where something is."""
 

@@ -10,8 +10,8 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed_search import FAR_BEHIND
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
-from analysis.engine.part import records_of
-from analysis.engine.pilot import PILOTS_FROM, by_pilot
+from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.pilot import by_pilot
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
@@ -86,7 +86,7 @@ def search(
 
     found = Found((), (), faint=False)
     if rings(system):
-        several = len(records_of(system)) >= PILOTS_FROM
+        several = len(records_of(system)) >= SEVERAL
         found = (by_pilot if several else by_ring)(refiner, most_causes, tell)
     if not found.fitted:
         found = _by_lines(refiner, null, most_causes, tell, found.led)
