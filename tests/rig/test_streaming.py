@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from rig_stand_ins import (
     WavePlatform,
@@ -118,8 +118,12 @@ def stream_of(format_: FrameFormat, digits: list[int]) -> bytes:
     st.integers(60, 200),
     st.integers(1, 7),
 )
+@example([0] * 11 + [0x0A0000] + [0] * 28, 65, 1)
 def test_a_lost_byte_costs_its_own_value_only(digits: list[int], at: int, step: int) -> None:
     data = stream_of(CRLF, digits)
+    # Of equal bytes in a row it is the same which is lost: a frame's last may stand for the next's.
+    while data[at + 1] == data[at]:
+        at += 1
     data = data[:at] + data[at + 1 :]
     lock = FrameLock(CRLF)
     found = []
