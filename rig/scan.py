@@ -1,4 +1,4 @@
-"""Who is on the bus and what each measures: every address asked once (protocol note, section 3)."""
+"""Who is on the bus and what each measures: every address asked (protocol note, section 3)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,6 +17,9 @@ SHOWN = ("BDR", "COF", "ICR", "ASF", "FMD", "TAS", "TAV", "NOV", "ZSE", "ZTR", "
 
 READ = tuple(dict.fromkeys((*SHOWN, *own_scaling.JUDGED, *own_scaling.AS_FOUND)))
 """Settings that are read; the others are told where they are not the factory's."""
+
+ASKED = 2
+"""So often an address is asked before it counts as empty."""
 
 
 @dataclass(frozen=True)
@@ -87,9 +90,9 @@ def scan(transport: Transport, addresses: range = message.ADDRESSES) -> Iterator
 
 
 def _identify(node: NodeClient, dialogue: Dialogue) -> Identity:
-    """Ask once; again where something else came, such as a value that waited to be fetched."""
+    """Once more where something else came, such as a value that waited to be fetched."""
     try:
-        return node.identify(tries=1)
+        return node.identify(tries=ASKED)
     except NoAnswerError as fault:
         if not fault.came:
             raise

@@ -41,7 +41,7 @@ class Policy:
 BRISTLE_LOSS: dict[str, tuple[float, ...]] = {"bristle_loss_s": (5e-4,)}
 
 POLICIES: dict[str, Policy] = {
-    "anchor_play": Policy(shapes={"hold_n": (0.5,)}, form_share=0.3),
+    "anchor_play": Policy(shapes={"hold_n": (0.5,), "slide_s": (1e-3,)}, form_share=0.3),
     "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
     "cable_hysteresis": Policy(shapes={"yield_m": (1e-3,)}),
     "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
@@ -104,6 +104,10 @@ SHARPEST = 3.0
 """Presliding this many times shorter than it is screened at is Coulomb's law."""
 
 SATURATION_STEP_N = 0.3
+
+RUN_CODE = 1000.0
+"""Moments are seconds of a run's clock and this many times the run's number; after the last run's
+number comes that of all of them."""
 
 GROWING = ("camera_exposure", "cable_sag")
 """What it does goes with the square of its magnitude."""
@@ -227,9 +231,13 @@ def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]], frame_hz: f
     term = Term("frames", "frames", "1", "", 0.0, 3.0, 1.0)
     count = Shape("count", "1", 1.0, 1.0, 3.0, (1.0, 2.0, 3.0), logarithmic=False, whole=True)
     moments: list[float] = []
-    for i, (start, end) in enumerate(times_s):
-        spacing = 0.25 if len(times_s) == 1 else 0.5
-        moments += [1000.0 * i + at for at in np.arange(start + 0.25, end - 0.1, spacing)]
+    spacing = 0.25 if len(times_s) == 1 else 0.5
+    spans = list(times_s)
+    if len(spans) > 1:
+        # A program that loses them may do so in every run, and at the same time.
+        spans.append((min(start for start, _ in spans), min(end for _, end in spans)))
+    for i, (start, end) in enumerate(spans):
+        moments += [RUN_CODE * i + at for at in np.arange(start + 0.25, end - 0.1, spacing)]
     when = Shape(
         "moment", "s", moments[0], 0.0, 1e5, tuple(moments),
         logarithmic=False, whole=True, finest=0.5 / frame_hz,
@@ -239,7 +247,12 @@ def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]], frame_hz: f
 
 
 def library_values(
-    name: str, setting: Setting, peaks_n: Sequence[float], record: int, frame_hz: float
+    name: str,
+    setting: Setting,
+    peaks_n: Sequence[float],
+    record: int,
+    frame_hz: float,
+    records: int = 1,
 ) -> dict[str, float | tuple[float, ...]] | None:
     """A candidate's numbers as the library's effect takes them.
 
@@ -253,6 +266,8 @@ def library_values(
         Which run it is for.
     frame_hz
         Of the camera.
+    records
+        How many runs there are.
 
     Returns
     -------
@@ -276,12 +291,12 @@ def library_values(
         limits = [max(peak - clip, 1e-3) if clip > 0.0 else 0.0 for peak, clip in pairs]
         return {"limit_n": tuple(limits), "knee_n": tuple(knee * clip for clip in clips)}
     if name == "frames_dropped":
-        moment = setting.shapes.get("moment", 0.0)
-        if setting.values.get("frames", 0.0) <= 0.0 or int(moment // 1000.0) != record:
+        run, at_s = divmod(setting.shapes.get("moment", 0.0), RUN_CODE)
+        if setting.values.get("frames", 0.0) <= 0.0 or run not in (record, records):
             return None
         return {
             "frames": setting.shapes.get("count", 1.0),
-            "at_s": moment % 1000.0,
+            "at_s": at_s,
             "frame_hz": frame_hz,
         }
     effect = library()[name]

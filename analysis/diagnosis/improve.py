@@ -61,7 +61,14 @@ def physics(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, dict[st
     for cause in diagnosis.judgement.causes:
         setting = Setting(cause.own, cause.shapes)
         for record in range(len(machine.recordings)):
-            own = library_values(cause.name, setting, machine.peaks_n, record, machine.frame_hz)
+            own = library_values(
+                cause.name,
+                setting,
+                machine.peaks_n,
+                record,
+                machine.frame_hz,
+                len(machine.recordings),
+            )
             if own is None:
                 continue
             table: dict[str, Any] = {}

@@ -209,7 +209,9 @@ class RecordedMachine:
         recording = self.recordings[record]
         values: dict[str, dict[str, Any]] = {}
         for name, setting in point.effects.items():
-            own = library_values(name, setting, self.peaks_n, record, self.frame_hz)
+            own = library_values(
+                name, setting, self.peaks_n, record, self.frame_hz, len(self.recordings)
+            )
             if own is not None:
                 values[name] = {
                     key: np.array(one, dtype=float) if isinstance(one, tuple) else one

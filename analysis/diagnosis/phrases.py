@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from analysis.diagnosis.candidates import RUN_CODE
 from analysis.diagnosis.spelling import cables, sentence
 from analysis.diagnosis.told import Told
 
@@ -199,7 +200,7 @@ PHRASES: Mapping[str, Callable[[Told], str]] = {
     ),
     "frames_dropped": lambda c: (
         f"{_frames(c)} of the video {'is' if c.value('count') <= 1.0 else 'are'} missing without a "
-        f"mark, from {c.value('moment') % 1000.0:.2f} s on"
+        f"mark, from {c.value('moment') % RUN_CODE:.2f} s on"
     ),
 }
 

@@ -8,8 +8,8 @@ from analysis.challenge.plant import layout as at
 
 Array = NDArray[np.float64]
 
-STOP = 20.0
-"""Stiffness of the hook's stops over that of the cable."""
+STOP = 200.0
+"""Stiffness of the hook's stops, steel, over that of the cable, Kevlar."""
 
 HOOK_TIME_S = 1.5e-3
 """How long the hook takes to slide home, s."""
