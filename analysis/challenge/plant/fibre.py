@@ -1,14 +1,14 @@
 """What a cable's material does along itself: elastic, unilateral, lossy, creeping, hooked."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+from analysis.challenge.plant.compiled import law
 
 Array = NDArray[np.float64]
 
-STOP = 200.0
+STOP = 2000.0
 """Stiffness of the hook's stops, steel, over that of the cable, Kevlar."""
 
 HOOK_TIME_S = 1.5e-3
@@ -24,7 +24,7 @@ LADDER_RATIO = 3.2
 """The rungs of the structural ladder: 0.05 Hz to 170 Hz."""
 
 
-@njit(cache=True)
+@law
 def pull(
     p: Array,
     s: Array,
@@ -76,7 +76,7 @@ def pull(
     return max(tension, 0.0)
 
 
-@njit(cache=True)
+@law
 def _lossy(p: Array, s: Array, moved: float, step_s: float) -> float:
     """Maxwell branches (dashpot, relaxation, ladder) and Jenkins sliders (Iwan 1966)."""
     stiff = p[at.STIFFNESS]
@@ -111,7 +111,7 @@ def _lossy(p: Array, s: Array, moved: float, step_s: float) -> float:
     return force
 
 
-@njit(cache=True)
+@law
 def _branch(force: float, stiff: float, tau: float, moved: float, step_s: float) -> float:
     """A spring in series with a dashpot, exact for a constant speed."""
     ratio = step_s / tau
@@ -120,7 +120,7 @@ def _branch(force: float, stiff: float, tau: float, moved: float, step_s: float)
     return held
 
 
-@njit(cache=True)
+@law
 def _hanging(p: Array, stretch: float, chord: float, level: float) -> float:
     """Elastic catenary over its chord: s = (2 T/w) sinh(w L / 2 T), solved by Newton's method."""
     weight = p[at.SAG] * p[at.DENSITY] * 9.80665 * level
@@ -142,7 +142,7 @@ def _hanging(p: Array, stretch: float, chord: float, level: float) -> float:
     return tension
 
 
-@njit(cache=True)
+@law
 def _arc(tension: float, weight: float, chord: float) -> float:
     """Length of a catenary of given horizontal pull over its chord, m."""
     half = 0.5 * weight * chord / tension
@@ -152,7 +152,7 @@ def _arc(tension: float, weight: float, chord: float) -> float:
     return arc
 
 
-@njit(cache=True)
+@law
 def _hook(p: Array, s: Array, stretch: float, step_s: float) -> float:
     """Way of a hook in its gap, m: held by friction, caught by stiff stops, slow by a damper."""
     stiff, hold, gap = p[at.STIFFNESS], p[at.HOLD], p[at.PLAY]
@@ -167,14 +167,14 @@ def _hook(p: Array, s: Array, stretch: float, step_s: float) -> float:
     return way
 
 
-@njit(cache=True)
+@law
 def _beyond(way: float, gap: float) -> float:
     """By how much the hook presses into a stop, m, with its sign."""
     pressed: float = np.sign(way) * max(abs(way) - gap, 0.0)
     return pressed
 
 
-@njit(cache=True)
+@law
 def _rim(p: Array, s: Array, stretch: float, speed: float, step_s: float) -> float:
     """A rim of its own mass, dragged by the cable through a stiff, lossy contact."""
     turn = 2.0 * np.pi * RIM_HZ

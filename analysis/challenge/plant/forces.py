@@ -6,10 +6,10 @@ after a change to the laws in `fibre`, `friction`, `loads`, `pulley` or `strings
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+from analysis.challenge.plant.compiled import law
 from analysis.challenge.plant.fibre import pull
 from analysis.challenge.plant.friction import friction
 from analysis.challenge.plant.loads import loads
@@ -19,7 +19,7 @@ from analysis.challenge.plant.strings import extension, vibrate
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@law
 def rotation(quaternion: Array) -> Array:
     """Rotation matrix of a unit quaternion (w, x, y, z), from the platform frame to O-XYZ."""
     w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
@@ -32,7 +32,7 @@ def rotation(quaternion: Array) -> Array:
     return turn
 
 
-@njit(cache=True)
+@law
 def push(
     cables: Array,
     states: Array,
@@ -116,7 +116,7 @@ def push(
     loads(g, qpos[:3], turn, qvel[:3], omega, attitude, wrench)
 
 
-@njit(cache=True)
+@law
 def _frame(g: Array, posts: Array, force: Array, step_s: float) -> None:
     """Each post is a mass on a spring in each direction: m b'' = F - b/C - loss."""
     circular = 2.0 * np.pi * g[at.FRAME_HZ]

@@ -4,10 +4,10 @@ Canudas de Wit, Olsson, Astrom & Lischinsky, IEEE Trans. Autom. Control 40 (1995
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+from analysis.challenge.plant.compiled import law
 
 Array = NDArray[np.float64]
 
@@ -15,7 +15,7 @@ BRISTLE_LOSS_S = 1e-3
 """sigma_1 / sigma_0: how long a bristle takes to come to rest, s."""
 
 
-@njit(cache=True)
+@law
 def friction(p: Array, s: Array, speed: float, tension: float, step_s: float) -> float:
     """Force of both kinds of bristles, N; positive where the cable lengthens.
 
@@ -38,7 +38,7 @@ def friction(p: Array, s: Array, speed: float, tension: float, step_s: float) ->
     return force
 
 
-@njit(cache=True)
+@law
 def _bristles(p: Array, s: Array, speed: float, step_s: float) -> float:
     """Z' = v - sigma_0 |v| z / g(v), F = sigma_0 z + sigma_1 z', g Stribeck's curve."""
     stiff = p[at.COULOMB] / p[at.BRISTLE]
@@ -54,7 +54,7 @@ def _bristles(p: Array, s: Array, speed: float, step_s: float) -> float:
     return force
 
 
-@njit(cache=True)
+@law
 def _wrapped(p: Array, s: Array, speed: float, tension: float, step_s: float) -> float:
     """T (exp(mu theta z) - 1): Euler and Eytelwein, mobilised by bristles, |z| <= 1."""
     bent = s[at.BENT_CAPSTAN]

@@ -1,15 +1,15 @@
 """What acts on the platform beside its cables: dampers, air, a hose."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+from analysis.challenge.plant.compiled import law
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@law
 def loads(
     g: Array,
     place: Array,
@@ -50,7 +50,7 @@ def loads(
             wrench[3 + j] -= g[at.HOSE_TURNING] * lag
 
 
-@njit(cache=True)
+@law
 def _air(g: Array, turn: Array, velocity: Array, omega: Array, wrench: Array) -> None:
     """Each face of a box by the speed across it, in the platform frame; turning by its size."""
     spin = np.sqrt(omega[0] ** 2 + omega[1] ** 2 + omega[2] ** 2)

@@ -1,13 +1,14 @@
 """A cable's path from its pulley to the platform: from a point, or from a swivelling wheel."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from analysis.challenge.plant.compiled import law
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@law
 def straight(start: Array, end: Array) -> tuple[float, float, float, float]:
     """Length from anchor `start` to base `end`, m, and the unit vector."""
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
@@ -15,7 +16,7 @@ def straight(start: Array, end: Array) -> tuple[float, float, float, float]:
     return length, x / length, y / length, z / length
 
 
-@njit(cache=True)
+@law
 def wrapped(start: Array, end: Array, radius: float) -> tuple[float, float, float, float]:
     """Wheel that swivels about the vertical through `end`, where the cable comes up from below.
 

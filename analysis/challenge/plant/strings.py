@@ -1,10 +1,10 @@
 """Transverse vibration of a cable: Eqs. 15 and 17 of the paper, further modes, a moving end."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from analysis.challenge.plant import layout as at
+from analysis.challenge.plant.compiled import law
 
 Array = NDArray[np.float64]
 
@@ -15,7 +15,7 @@ HORIZONTAL = (1, 2, 3, 4)
 """Further modes in the two planes; the first vertical one is the paper's own."""
 
 
-@njit(cache=True)
+@law
 def extension(p: Array, s: Array, chord: float) -> float:
     """Length that all modes take up, n^2 pi^2 X_n^2 / (4 L) each, m (Eq. 15)."""
     whole = s[at.STRING] * s[at.STRING]
@@ -27,7 +27,7 @@ def extension(p: Array, s: Array, chord: float) -> float:
     return taken_up
 
 
-@njit(cache=True)
+@law
 def vibrate(
     p: Array,
     s: Array,
@@ -73,7 +73,7 @@ def vibrate(
     s[at.OLD_SWAY] = sway
 
 
-@njit(cache=True)
+@law
 def _overtones(p: Array, s: Array, square: float, sway: float, side: float, step_s: float) -> None:
     """A taut string with a moving end, mode by mode; the shape is X_n sin(n pi y / L)."""
     for j in range(at.OVERTONES):
