@@ -156,17 +156,23 @@ class FollowedSearch(Leader):
         return [one for one in self._led if one.names not in self._misplaced]
 
     def _lead_placed(self) -> None:
-        """What is on, in the places that are told at the end."""
+        """What is on, in the places that are told at the end, or where the ring was lost."""
         candidates = self._refiner.candidates
         for _ in range(PLACINGS):
             best = self._best
-            if best.state is None or not best.to_end or self._effort > self._most:
+            if best.state is None or self._effort > self._most:
                 return
             if not any(is_placed(candidates[name]) for name in best.names):
                 return
             if best.state.hypothesis.key in self._placed:
                 return
             self._placed.add(best.state.hypothesis.key)
+            if not best.to_end:
+                asked = self._faint(best)
+                for _, one in placed_again(asked, candidates)[:1]:
+                    state = State.of(one, candidates)
+                    self._lead(nuisances_of(asked, one), state, near=False)
+                continue
             asked = self._faint(replace(best, about=None))
             forms = forms_of(self._refiner, best, self._nothing, len(self._samples.shares))
             _, noise = max(forms)
