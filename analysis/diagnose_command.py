@@ -50,7 +50,7 @@ def diagnose(
         str | None, typer.Option(help="consider these only, with commas between")
     ] = None,
     figures: Annotated[bool, typer.Option(help="draw figures into the results folder")] = True,
-    workers: Annotated[int, typer.Option(min=1, help="threads")] = 2,
+    workers: Annotated[int, typer.Option(min=1, help="processes")] = 2,
 ) -> None:
     """Find out what physics the simulation left out, and show that the fit improves.
 

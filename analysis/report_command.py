@@ -13,7 +13,7 @@ def report(
     out: Annotated[
         Path | None, typer.Option(help="the page; default: report.html among the run's results")
     ] = None,
-    workers: Annotated[int, typer.Option(min=1, help="threads, where it must be diagnosed")] = 2,
+    workers: Annotated[int, typer.Option(min=1, help="processes, where it must be diagnosed")] = 2,
 ) -> None:
     """Write one self-contained HTML page: the verdict, its figures, and the paper's table.
 

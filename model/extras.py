@@ -15,6 +15,9 @@ from model.machine import Machine
 
 Array = NDArray[np.float64]
 
+SMALL = {"m": 1e-6, "N": 1e-3}
+"""Steps of the differences that tell what a state does, by its unit."""
+
 
 def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
     """The effects of the plant, for the kernel.
@@ -46,10 +49,13 @@ def following(extras: Extras | None) -> NDArray[np.int64]:
     return np.array(places, dtype=np.int64)[:, None] + np.arange(CABLES)
 
 
-def held(extras: Extras | None) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Places of the states that another's rate holds at rest, and of those others."""
+def held(
+    extras: Extras | None,
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Places of the states that a rate holds at rest, of the states whose rate, and small steps."""
     places: list[int] = []
     by: list[int] = []
+    steps: list[float] = []
     for first, effect, state in _states(extras):
         if state.held_by and extras is not None:
             names = [one.name for one in effect.states]
@@ -57,7 +63,8 @@ def held(extras: Extras | None) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
             own = extras.carrier if state.shared else np.arange(CABLES)
             places += [first + int(one) for one in np.unique(own)]
             by += [first + int(one) + apart for one in np.unique(own)]
-    return np.array(places, dtype=np.int64), np.array(by, dtype=np.int64)
+            steps += [SMALL[state.unit]] * len(np.unique(own))
+    return np.array(places, dtype=np.int64), np.array(by, dtype=np.int64), np.array(steps)
 
 
 def _states(extras: Extras | None) -> Iterator[tuple[int, Effect, State]]:

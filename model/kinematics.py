@@ -98,6 +98,15 @@ def rotation(angles: Trigonometry) -> Matrix:
     )
 
 
+def angles_of(matrix: Matrix) -> Vector:
+    """Roll, pitch and yaw of a rotation, in rad: what `rotation` makes a matrix of."""
+    return (
+        np.arctan2(matrix[2][1], matrix[2][2]),
+        -np.arcsin(np.minimum(np.maximum(matrix[2][0], -1.0), 1.0)),
+        np.arctan2(matrix[1][0], matrix[0][0]),
+    )
+
+
 def angular_velocity(angles: Trigonometry, rates: Vector) -> Vector:
     """Angular velocity in O-XYZ: omega = H [phi', theta', psi'], H as printed below Eq. 2.
 

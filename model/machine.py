@@ -1,6 +1,7 @@
 """One machine as plain arrays: what the equations of motion need of a rig file, and no more."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -71,7 +72,7 @@ class Machine:
         """Number of cables."""
         return len(self.stiffness)
 
-    @property
+    @cached_property
     def rest_length(self) -> Array:
         """L_0i, lengths with the platform at rest, shape (8,), m."""
         return np.asarray(np.linalg.norm(self.base - self.anchor, axis=1))
@@ -98,7 +99,7 @@ class Machine:
         damping_n_s_per_m
             Shape (8,).
         """
-        return float(self._per_inertia(damping_n_s_per_m).max())
+        return float(self._per_inertia(damping_n_s_per_m).max()) if damping_n_s_per_m.any() else 0.0
 
     def _per_inertia(self, along_cables: Array) -> Array:
         """Eigenvalues of M^-1 J_A^T c J_A, c a law of each cable along itself, shape (6,)."""
@@ -112,6 +113,10 @@ class Machine:
 
     def plant(self) -> Plant:
         """The arrays in the order the kernel reads them."""
+        return self._plant
+
+    @cached_property
+    def _plant(self) -> Plant:
         return Plant(
             mass=float(self.mass),
             gravity=float(self.gravity),

@@ -19,8 +19,8 @@ MOST_ROUNDS = 12
 CLOSE_M = 1e-10
 """Rounds end when the platform moves by less than this."""
 
-STEP, STEP_N = 1e-6, 1e-3
-"""Of the differences, m and rad, and N."""
+STEP = 1e-6
+"""Of the differences of the pose, m and rad."""
 
 POSE = np.arange(6)
 """Where it is in the state vector; its rates follow."""
@@ -52,9 +52,9 @@ def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: i
     derivatives, plant = compiled("derivatives"), machine.plant()
     drive = np.append(wrench, np.zeros(machine.cables * 2))
     follow = following(extras)
-    places, held_by = held(extras)
+    places, held_by, steps = held(extras)
     places, held_by = np.append(POSE, places), np.append(POSE + len(POSE), held_by)
-    steps = np.where(places < len(POSE), STEP, STEP_N)
+    steps = np.append(np.full(len(POSE), STEP), steps)
     found = np.zeros(states)
     rates = np.empty((len(places) + 1, states))
     for _ in range(MOST_ROUNDS):

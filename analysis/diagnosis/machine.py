@@ -1,14 +1,15 @@
 """CDPR-8 as a system for the engine: runs of one machine, simulated as they were recorded."""
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.diagnosis.candidates import candidates, library_values
+from analysis.diagnosis.crew import Crew
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
@@ -27,11 +28,14 @@ OUTPUT_HZ = 333.0
 LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
 
+LOOKING = 0.3
+"""What it takes to look at a simulation once more, of what it takes to simulate."""
+
 LATE_S = 0.3
 """Cameras and cells may be late by so much: a simulation goes on for longer than what is seen."""
 
 GROUP = 16
-"""As many tasks as lanes are simulated by one thread, and looked at."""
+"""As many tasks as lanes are simulated by one process, and looked at."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +48,11 @@ class _Job:
 
 
 @dataclass(frozen=True)
-class _Share:
-    """Some points of one run: place of the point -> what to simulate for it."""
+class Share:
+    """Some points of one run: place of the point -> what to simulate."""
 
     record: int
-    jobs: Mapping[int, Sequence[_Job]]
+    points: Mapping[int, Point]
 
 
 class RecordedMachine:
@@ -61,7 +65,7 @@ class RecordedMachine:
     effects
         Names of the effects to look at; None: all.
     workers
-        Threads.
+        Processes.
     """
 
     def __init__(
@@ -76,6 +80,12 @@ class RecordedMachine:
             bundle for one in recordings for bundle in one.bundles
         )
         self._known, self._meanings = nuisances(self.recordings)
+        self._sigmas = np.array([one.sigma for one in self._known])
+        self._moving = [_moving(self._meanings, i) for i in range(len(recordings))]
+        self._inside = [
+            np.flatnonzero([one.record in (-1, i) and _acts_inside(one) for one in self._meanings])
+            for i in range(len(recordings))
+        ]
         camera = recordings[0].rig.camera
         self.frame_hz = camera.fps if camera is not None else 16.0
         times = [
@@ -89,6 +99,7 @@ class RecordedMachine:
             if posed or one.side not in ("camera", "clock")
         )
         self._workers = workers
+        self._crew: Crew[Share, dict[int, Prediction]] = Crew(self, workers)
         self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]
         self._nothing = [[np.zeros_like(bundle.value) for bundle in one.bundles]
                          for one in recordings]  # fmt: skip
@@ -123,7 +134,7 @@ class RecordedMachine:
         shares = [part for record in range(len(self.recordings))
                   for part in self._shares(points, record)]  # fmt: skip
         found: list[dict[int, Prediction]] = [{} for _ in self.recordings]
-        for share, seen in zip(shares, self._all(shares), strict=True):
+        for share, seen in zip(shares, self._crew.do(shares), strict=True):
             found[share.record].update(seen)
         return [
             reduce([bundle for of_record, none in zip(found, self._nothing, strict=True)
@@ -131,47 +142,60 @@ class RecordedMachine:
             for place in range(len(points))
         ]  # fmt: skip
 
-    def _shares(self, points: Sequence[Point], record: int) -> list[_Share]:
+    def _shares(self, points: Sequence[Point], record: int) -> list[Share]:
         """One run of all points, in shares that are simulated side by side."""
-        together: dict[tuple[object, ...], dict[int, list[_Job]]] = {}
+        together: dict[tuple[object, ...], dict[int, Point]] = {}
         name = self.recordings[record].run.name
         for place, point in enumerate(points):
-            if point.records and name not in point.records:
-                continue
-            jobs = [self.job(point, record, share) for share in GUARDS[point.ring]]
-            together.setdefault(tuple(job.key for job in jobs), {})[place] = jobs
+            if not point.records or name in point.records:
+                together.setdefault(self._key(point, record), {})[place] = point
         # Like simulations beside each other.
         alike = [together[key] for key in sorted(together, key=str)]
-        count = len({job.key for places in alike for jobs in places.values() for job in jobs})
+        count = sum(len(GUARDS[next(iter(places.values())).ring]) for places in alike)
         self.simulated += count
-        if not count:
-            return []
-        size = 1 if count / self._workers < LANES_FROM else min(GROUP, -(-count // self._workers))
-        each = max(size * len(alike) // count, 1)
-        return [
-            _Share(record, {place: jobs for places in alike[first : first + each]
-                            for place, jobs in places.items()})
-            for first in range(0, len(alike), each)
-        ]  # fmt: skip
+        # As many for each process, and each about as long.
+        parts = self._rounds(count) * self._workers
+        cost = np.array([1.0 + LOOKING * (len(places) - 1) for places in alike])
+        part = (np.cumsum(cost) - 0.5 * cost) * parts // cost.sum()
+        shares = []
+        for number in range(parts):
+            chosen = [alike[i] for i in np.flatnonzero(part == number)]
+            if chosen:
+                of = {place: one for places in chosen for place, one in places.items()}
+                shares.append(Share(record, of))
+        return shares
 
-    def _all(self, shares: Sequence[_Share]) -> list[dict[int, Prediction]]:
-        if self._workers == 1 or len(shares) == 1:
-            return [self._seen(share) for share in shares]
-        with ThreadPoolExecutor(self._workers) as pool:
-            return list(pool.map(self._seen, shares))
+    def _rounds(self, count: int) -> int:
+        """How many shares each process does of so many simulations."""
+        return max(-(-count // (GROUP * self._workers)), 1)
 
-    def _seen(self, share: _Share) -> dict[int, Prediction]:
-        """What is seen of a share: point -> its samples."""
-        tasks = {job.key: job.task for jobs in share.jobs.values() for job in jobs}
+    def _key(self, point: Point, record: int) -> tuple[object, ...]:
+        """Equal where the same is simulated, however it is looked at."""
+        inside = [
+            (name, tuple(sorted(one.values.items())), tuple(sorted(one.shapes.items())))
+            for name, one in sorted(point.effects.items())
+            if library()[name].acts.side not in _OUTSIDE
+        ]
+        motion = _cut(self.recordings[record], point.upto)
+        moved = point.nuisance[self._inside[record]].tobytes()
+        return len(inside), *inside, point.ring, motion and motion.duration_s, moved
+
+    def do(self, work: Share) -> dict[int, Prediction]:
+        """What is seen of a share: place of the point -> its samples."""
+        all_jobs = {
+            place: [self.job(point, work.record, guard) for guard in GUARDS[point.ring]]
+            for place, point in work.points.items()
+        }
+        tasks = {job.key: job.task for jobs in all_jobs.values() for job in jobs}
         solved = simulate_many(list(tasks.values()), output_rate_hz=OUTPUT_HZ, fewest=LANES_FROM)
         done = dict(zip(tasks, solved, strict=True))
         seen: dict[tuple[object, ...], Prediction] = {}
         found: dict[int, Prediction] = {}
-        for place, jobs in share.jobs.items():
+        for place, jobs in all_jobs.items():
             key = tuple((job.key, job.sight.key) for job in jobs)
             if key not in seen:
                 simulation = without_bias([done[job.key] for job in jobs])
-                seen[key] = seen_by(self.recordings[share.record], simulation, jobs[0].sight)
+                seen[key] = seen_by(self.recordings[work.record], simulation, jobs[0].sight)
             found[place] = seen[key]
         return found
 
@@ -183,11 +207,8 @@ class RecordedMachine:
             mine = values.setdefault("cable_viscous", _nothing("cable_viscous"))
             damping = guard * self._guards[record]
             mine["viscous_n_s_per_m"] = mine["viscous_n_s_per_m"] + damping
-        active = []
-        for name in sorted(values):
-            effect = ActiveEffect(name, _within(name, values[name]))
-            if not effect.is_nothing:
-                active.append(effect)
+        every = [_active(name, _plain(values[name])) for name in sorted(values)]
+        active = [one for one in every if not one.is_nothing]
         inside = tuple(one for one in active if one.effect.acts.side not in _OUTSIDE)
         outside = tuple(one for one in active if one.effect.acts.side in _OUTSIDE)
         motion = _cut(recording, point.upto)
@@ -217,26 +238,26 @@ class RecordedMachine:
                     key: np.array(one, dtype=float) if isinstance(one, tuple) else one
                     for key, one in own.items()
                 }
+        amounts = point.nuisance * self._sigmas
         start_s, pose_zero, late_s = recording.shift_s, np.zeros(6), np.zeros(8)
-        for i in np.flatnonzero(point.nuisance):
-            meaning = self._meanings[i]
-            if meaning.record not in (-1, record):
+        for (effect, parameter), (of, where) in self._moving[record].items():
+            moved = amounts[of]
+            if not moved.any():
                 continue
-            amount = float(point.nuisance[i]) * self._known[i].sigma
-            if meaning.effect == "start":
-                start_s += amount
-            elif meaning.effect == "pose_zero":
-                pose_zero[meaning.axis] += amount
-            elif meaning.effect == "sampling":
-                late_s[meaning.cable - 1] += amount
+            if effect == "start":
+                start_s += float(moved[0])
+            elif effect == "pose_zero":
+                pose_zero[where] += moved
+            elif effect == "sampling":
+                late_s[where] += moved
             else:
-                mine = values.setdefault(meaning.effect, _nothing(meaning.effect))
-                if meaning.cable:
-                    column = np.array(mine.get(meaning.parameter, np.zeros(8)))
-                    column[meaning.cable - 1] += amount
-                    mine[meaning.parameter] = column
+                mine = values.setdefault(effect, _nothing(effect))
+                if where is None:
+                    mine[parameter] = mine.get(parameter, 0.0) + float(moved[0])
                 else:
-                    mine[meaning.parameter] = mine.get(meaning.parameter, 0.0) + amount
+                    column = np.array(mine.get(parameter, np.zeros(8)))
+                    column[where] += moved
+                    mine[parameter] = column
         return values, start_s, pose_zero, late_s
 
     def _nominal_peaks(self) -> list[float]:
@@ -249,6 +270,12 @@ class RecordedMachine:
 
 
 _OUTSIDE = ("cell", "camera", "clock")
+
+
+def _acts_inside(meaning: Meaning) -> bool:
+    """Whether a nuisance changes what is simulated, and not only how that is looked at."""
+    known = library().get(meaning.effect)
+    return known is not None and known.acts.side not in _OUTSIDE
 
 
 def _cut(recording: Recording, upto: float) -> RampedSine | None:
@@ -271,13 +298,39 @@ def _nothing(name: str) -> dict[str, Any]:
     }
 
 
-def _within(name: str, values: Mapping[str, Any]) -> dict[str, float | tuple[float, ...]]:
-    """Clipped to the library's range, as plain numbers."""
-    found: dict[str, float | tuple[float, ...]] = {}
+def _plain(values: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
+    """Numbers of an effect, to be told apart by value."""
+    return tuple(
+        (name, tuple(one.tolist()) if isinstance(one, np.ndarray) else one)
+        for name, one in values.items()
+    )
+
+
+@lru_cache(maxsize=4096)
+def _active(name: str, values: tuple[tuple[str, Any], ...]) -> ActiveEffect:
+    """An effect, its numbers clipped to the library's range: of neighbours most have the same."""
+    given, found = dict(values), {}
     for one in library()[name].parameters:
-        if one.name in values:
-            clipped = np.clip(values[one.name], one.low, one.high)
+        if one.name in given:
+            clipped = np.clip(given[one.name], one.low, one.high)
             found[one.name] = (
                 tuple(float(v) for v in clipped) if np.ndim(clipped) else float(clipped)
             )
-    return found
+    return ActiveEffect(name, found)
+
+
+_Moving = dict[tuple[str, str], tuple[NDArray[np.int64], NDArray[np.int64] | None]]
+
+
+def _moving(meanings: Sequence[Meaning], record: int) -> _Moving:
+    """Of each number in one run: which nuisances move it, and where; None: it has no places."""
+    found: dict[tuple[str, str], list[tuple[int, int]]] = {}
+    for i, one in enumerate(meanings):
+        if one.record in (-1, record):
+            where = one.axis if one.effect == "pose_zero" else one.cable - 1
+            found.setdefault((one.effect, one.parameter), []).append((i, where))
+    return {
+        key: (np.array([i for i, _ in pairs]),
+              None if pairs[0][1] < 0 else np.array([where for _, where in pairs]))
+        for key, pairs in found.items()
+    }  # fmt: skip

@@ -63,7 +63,7 @@ class Survey:
     rivals
         What is to be told apart.
     workers
-        Threads.
+        Processes.
     tell
         Told of progress.
     """
@@ -118,7 +118,7 @@ def survey(
     machine, diagnosis
         The runs and what was found.
     workers
-        Threads.
+        Processes.
     tell
         Told of progress.
     """

@@ -68,7 +68,7 @@ def diagnose_recordings(
     stop_after
         See `analysis.engine.diagnose`.
     workers
-        Threads.
+        Processes.
     tell
         Told of progress.
     """
@@ -108,7 +108,7 @@ def diagnose_runs(
     rig
         The machine, where it is not the runs' own.
     workers
-        Threads.
+        Processes.
     look_ahead
         Whether to simulate what could be recorded next, where the verdict is ambiguous: some
         seconds more.

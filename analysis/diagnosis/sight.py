@@ -78,4 +78,6 @@ def _averaged(simulation: Simulation, recording: Recording) -> Simulation:
 
 
 def _finite(values: Array) -> Array:
+    if np.abs(values).max(initial=0.0) < FAR:
+        return values
     return np.clip(np.nan_to_num(values, nan=FAR, posinf=FAR, neginf=-FAR), -FAR, FAR)

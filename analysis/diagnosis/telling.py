@@ -66,7 +66,7 @@ class Telling:
     experiment
         The experiment.
     workers
-        Threads.
+        Processes.
     """
 
     def __init__(

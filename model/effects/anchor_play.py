@@ -35,7 +35,7 @@ EFFECT = Effect(
         Parameter("hold_n", "N", 0.5, 0.05, 10.0, "F_h"),
         Parameter("slide_s", "s", 1e-3, 4e-4, 2e-2, "t_h, in which it slides home"),
     ),
-    states=(State("hook", "m", "y, the way the hook has slid"),),
+    states=(State("hook", "m", "y, the way the hook has slid", held_by="hook"),),
     pull=pull,
     rates=rates,
     longest_step_s=1.6e-3,

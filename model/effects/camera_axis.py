@@ -4,22 +4,24 @@ from typing import Any
 
 import numpy as np
 
+from model.kinematics import angles_of, rotation, trigonometry
 from model.library.effect import Acts, Effect, Parameter
 
 
 def measure(look: Any, axis_roll_deg: Any, axis_pitch_deg: Any, axis_yaw_deg: Any) -> Any:
     """C R C^T and C x, C the camera's rotation."""
-    from scipy.spatial.transform import Rotation
-
-    turned = (axis_yaw_deg, axis_pitch_deg, axis_roll_deg)
+    turned = (axis_roll_deg, axis_pitch_deg, axis_yaw_deg)
     if not any(turned):
         return look
-    camera = Rotation.from_euler("ZYX", turned, degrees=True)
+    roll, pitch, yaw = np.radians(turned)
+    camera = np.array(rotation(trigonometry((roll, pitch, yaw))))
 
     def seen(stamp_s: Any) -> Any:
         pose = look(stamp_s)
-        attitude = camera * Rotation.from_euler("ZYX", pose[:, 5:2:-1]) * camera.inv()
-        return np.hstack([camera.apply(pose[:, :3]), attitude.as_euler("ZYX")[:, ::-1]])
+        platform = np.array(rotation(trigonometry(pose[:, 3:].T)))
+        attitude = np.tensordot(np.tensordot(camera, platform, 1), camera, (1, 1))
+        angles = angles_of(np.moveaxis(attitude, 2, 1))
+        return np.hstack([pose[:, :3] @ camera.T, np.stack(angles, axis=1)])
 
     return seen
 

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from model.kinematics import rotation, transform, trigonometry
 from model.library.effect import Acts, Effect, Parameter
 
 if TYPE_CHECKING:
@@ -20,14 +21,12 @@ def change(machine: "Machine", centre_x_m: Any, centre_y_m: Any, centre_z_m: Any
 
 def measure(look: Any, centre_x_m: float, centre_y_m: float, centre_z_m: float) -> Any:
     """X + d - R d: a camera sees the point that the rig file takes for the centre of mass."""
-    from scipy.spatial.transform import Rotation
-
     moved = np.array([centre_x_m, centre_y_m, centre_z_m])
 
     def seen(stamp_s: Any) -> Any:
         pose = look(stamp_s)
-        turned = Rotation.from_euler("ZYX", pose[:, 5:2:-1]).apply(moved)
-        return np.hstack([pose[:, :3] + moved - turned, pose[:, 3:]])
+        turned = transform(rotation(trigonometry(pose[:, 3:].T)), tuple(moved))
+        return np.hstack([pose[:, :3] + moved - np.stack(turned, axis=1), pose[:, 3:]])
 
     return seen
 

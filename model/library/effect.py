@@ -76,7 +76,8 @@ class State:
     follows
         Whether it follows the elongation of its cable: at rest it has come to it.
     held_by
-        The state whose rate is zero where this one is at rest; "": it stays where it begins.
+        The state whose rate is zero where this one is at rest, which may be its own; "": it stays
+        where it begins.
     """
 
     name: str

@@ -18,7 +18,7 @@ def problem(rig: Rig, steps_taken: int, effects: tuple[ActiveEffect, ...] = ()) 
     task = Task(rig, Excitation(rest_s=0.0, motion_s=1.0, ramp_s=0.0), effects=effects)
     steps = task.steps(method, 1000.0, 2e-3)
     inside, inside_weights = rows_inside(method, steps)
-    state = np.random.default_rng(1).normal(size=states) * 1e-2
+    state = np.random.default_rng(1).normal(size=states) * 1e-3
     return (
         state,
         steps.step_s[:steps_taken],

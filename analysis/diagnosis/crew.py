@@ -1,0 +1,122 @@
+"""Processes that simulate beside this one: most of a simulation's time here is Python's."""
+
+import pickle
+import signal
+from collections.abc import Sequence
+from concurrent.futures import BrokenExecutor, Future
+from functools import lru_cache
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Any, Generic, Protocol, TypeVar
+from weakref import finalize
+
+from threadpoolctl import threadpool_limits
+
+Work = TypeVar("Work")
+Done = TypeVar("Done")
+Work_contra = TypeVar("Work_contra", contravariant=True)
+Done_co = TypeVar("Done_co", covariant=True)
+
+IDLE_S = 60.0
+"""A process that had nothing to do for so long ends."""
+
+FEW = 30
+"""Work is done in this process until so much was done: to start others takes seconds."""
+
+
+class Worker(Protocol[Work_contra, Done_co]):
+    """What does the work; its copy in another process does the same."""
+
+    def do(self, work: Work_contra) -> Done_co:
+        """One piece of work."""
+        ...
+
+
+class Crew(Generic[Work, Done]):
+    """A worker and its copies in other processes.
+
+    Parameters
+    ----------
+    worker
+        Is copied when the others are first wanted: what it is must not change after that.
+    processes
+        With this one.
+    """
+
+    def __init__(self, worker: Worker[Work, Done], processes: int) -> None:
+        self._worker = worker
+        self._others = processes - 1
+        self._seen = 0
+        self._path: Path | None = None
+        self._ready: list[Future[Any]] = []
+
+    def do(self, work: Sequence[Work]) -> list[Done]:
+        """All of the work, in its order.
+
+        What each piece comes to does not depend on who does it.
+        """
+        self._seen += len(work)
+        mine, theirs = self._stripes(work)
+        away: list[Future[list[Done]]] = [
+            self._executor().submit(_do, str(self._path), [work[i] for i in one]) for one in theirs
+        ]
+        found: dict[int, Done] = {i: self._worker.do(work[i]) for i in mine}
+        for stripe, future in zip(theirs, away, strict=True):
+            try:
+                done = future.result()
+            except BrokenExecutor:
+                # A process that the system ended takes nothing with it: its part is done here.
+                self._others = 0
+                done = [self._worker.do(work[i]) for i in stripe]
+            found.update(zip(stripe, done, strict=True))
+        return [found[i] for i in range(len(work))]
+
+    def _stripes(self, work: Sequence[Work]) -> tuple[range, list[range]]:
+        """Which pieces this process does, and the others: none, until they are ready."""
+        processes, count = self._others + 1, len(work)
+        if processes == 1 or count < 2 or self._seen < FEW:
+            return range(count), []
+        if self._path is None:
+            self._copy(work[0])
+        if not all(one.done() for one in self._ready):
+            return range(count), []
+        if any(one.exception() is not None for one in self._ready):
+            self._others = 0
+            return range(count), []
+        first, *others = (range(i, count, processes) for i in range(processes))
+        return first, [one for one in others if one]
+
+    def _copy(self, work: Work) -> None:
+        """Start the others, each with a piece of work that is only to make it ready."""
+        with NamedTemporaryFile(prefix="cdpr8-", suffix=".pickle", delete=False) as file:
+            pickle.dump(self._worker, file)
+        self._path = Path(file.name)
+        finalize(self, self._path.unlink, missing_ok=True)
+        executor = self._executor()
+        self._ready = [executor.submit(_do, file.name, [work]) for _ in range(self._others)]
+
+    def _executor(self) -> Any:
+        from loky import get_reusable_executor
+
+        return get_reusable_executor(
+            max_workers=self._others, timeout=IDLE_S, initializer=_leave_interrupts
+        )
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C is for the process that asked."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@lru_cache(maxsize=2)
+def _worker_at(path: str) -> Worker[Any, Any]:
+    with open(path, "rb") as file:
+        worker: Worker[Any, Any] = pickle.load(file)
+    # What is loaded by now has its threads: the processes are the parallelism.
+    threadpool_limits(1)
+    return worker
+
+
+def _do(path: str, work: Sequence[Any]) -> list[Any]:
+    worker = _worker_at(path)
+    return [worker.do(one) for one in work]
