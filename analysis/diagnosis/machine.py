@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,11 +10,12 @@ from numpy.typing import NDArray
 from analysis.diagnosis.candidates import candidates, library_values
 from analysis.diagnosis.crew import Crew
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
+from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
-from model import ActiveEffect, Task, simulate_many
+from model import Task, simulate_many
 from model.library.discovery import library
 from model.motion import RampedSine
 from model.simulator import run as simulate_task
@@ -80,11 +80,8 @@ class RecordedMachine:
             bundle for one in recordings for bundle in one.bundles
         )
         self._known, self._meanings = nuisances(self.recordings)
-        self._sigmas = np.array([one.sigma for one in self._known])
-        self._moving = [_moving(self._meanings, i) for i in range(len(recordings))]
-        self._inside = [
-            np.flatnonzero([one.record in (-1, i) and _acts_inside(one) for one in self._meanings])
-            for i in range(len(recordings))
+        self._moving = [
+            Moving(self._meanings, self._known, record) for record in range(len(recordings))
         ]
         camera = recordings[0].rig.camera
         self.frame_hz = camera.fps if camera is not None else 16.0
@@ -174,10 +171,10 @@ class RecordedMachine:
         inside = [
             (name, tuple(sorted(one.values.items())), tuple(sorted(one.shapes.items())))
             for name, one in sorted(point.effects.items())
-            if library()[name].acts.side not in _OUTSIDE
+            if library()[name].acts.side not in OUTSIDE
         ]
         motion = _cut(self.recordings[record], point.upto)
-        moved = point.nuisance[self._inside[record]].tobytes()
+        moved = point.nuisance[self._moving[record].inside].tobytes()
         return len(inside), *inside, point.ring, motion and motion.duration_s, moved
 
     def do(self, work: Share) -> dict[int, Prediction]:
@@ -202,16 +199,16 @@ class RecordedMachine:
     def job(self, point: Point, record: int, guard: float = 0.0) -> _Job:
         """What one run of a point is, its cables damped by a share of the guard."""
         recording = self.recordings[record]
-        values, start_s, pose_zero, late_s = self._moved(point, record)
+        moved = self._moved(point, record)
         if guard:
-            mine = values.setdefault("cable_viscous", _nothing("cable_viscous"))
+            mine = moved.values.setdefault("cable_viscous", nothing("cable_viscous"))
             damping = guard * self._guards[record]
             mine["viscous_n_s_per_m"] = mine["viscous_n_s_per_m"] + damping
-        every = [_active(name, _plain(values[name])) for name in sorted(values)]
-        active = [one for one in every if not one.is_nothing]
-        inside = tuple(one for one in active if one.effect.acts.side not in _OUTSIDE)
-        outside = tuple(one for one in active if one.effect.acts.side in _OUTSIDE)
+        acting = active(moved.values)
+        inside = tuple(one for one in acting if one.effect.acts.side not in OUTSIDE)
+        outside = tuple(one for one in acting if one.effect.acts.side in OUTSIDE)
         motion = _cut(recording, point.upto)
+        start_s = recording.shift_s + moved.late_start_s
         task = Task(
             rig=recording.rig,
             excitation=recording.excitation,
@@ -221,14 +218,10 @@ class RecordedMachine:
         )
         key = (motion and motion.duration_s, *((one.name, *sorted(one.values.items()))
                                                for one in inside))  # fmt: skip
-        return _Job(key, task, Sight(outside, start_s, pose_zero, late_s))
+        return _Job(key, task, Sight(outside, start_s, moved.pose_zero, moved.late_s))
 
-    def _moved(
-        self, point: Point, record: int
-    ) -> tuple[dict[str, dict[str, Any]], float, Array, Array]:
-        """Effects with their numbers, start, the pose's zero and the cells' lateness."""
-        recording = self.recordings[record]
-        values: dict[str, dict[str, Any]] = {}
+    def _moved(self, point: Point, record: int) -> Moved:
+        values: Values = {}
         for name, setting in point.effects.items():
             own = library_values(
                 name, setting, self.peaks_n, record, self.frame_hz, len(self.recordings)
@@ -238,27 +231,7 @@ class RecordedMachine:
                     key: np.array(one, dtype=float) if isinstance(one, tuple) else one
                     for key, one in own.items()
                 }
-        amounts = point.nuisance * self._sigmas
-        start_s, pose_zero, late_s = recording.shift_s, np.zeros(6), np.zeros(8)
-        for (effect, parameter), (of, where) in self._moving[record].items():
-            moved = amounts[of]
-            if not moved.any():
-                continue
-            if effect == "start":
-                start_s += float(moved[0])
-            elif effect == "pose_zero":
-                pose_zero[where] += moved
-            elif effect == "sampling":
-                late_s[where] += moved
-            else:
-                mine = values.setdefault(effect, _nothing(effect))
-                if where is None:
-                    mine[parameter] = mine.get(parameter, 0.0) + float(moved[0])
-                else:
-                    column = np.array(mine.get(parameter, np.zeros(8)))
-                    column[where] += moved
-                    mine[parameter] = column
-        return values, start_s, pose_zero, late_s
+        return self._moving[record].by(point.nuisance, values)
 
     def _nominal_peaks(self) -> list[float]:
         """Highest simulated tension of each cable over all runs, N."""
@@ -267,15 +240,6 @@ class RecordedMachine:
         runs = [simulate_task(job.task, output_rate_hz=OUTPUT_HZ) for job in jobs]
         highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
         return [float(one) for one in highest]
-
-
-_OUTSIDE = ("cell", "camera", "clock")
-
-
-def _acts_inside(meaning: Meaning) -> bool:
-    """Whether a nuisance changes what is simulated, and not only how that is looked at."""
-    known = library().get(meaning.effect)
-    return known is not None and known.acts.side not in _OUTSIDE
 
 
 def _cut(recording: Recording, upto: float) -> RampedSine | None:
@@ -287,50 +251,3 @@ def _cut(recording: Recording, upto: float) -> RampedSine | None:
     # Whole tenths: recordings that are cut alike share their times.
     until_s = np.ceil(10.0 * (last_s - recording.shift_s + LATE_S)) / 10.0
     return replace(whole, duration_s=float(until_s)) if until_s < whole.duration_s else None
-
-
-def _nothing(name: str) -> dict[str, Any]:
-    """An effect with all magnitudes zero, so that only what is moved acts."""
-    return {
-        one.name: np.zeros(8) if one.per_cable else 0.0
-        for one in library()[name].parameters
-        if one.magnitude
-    }
-
-
-def _plain(values: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
-    """Numbers of an effect, to be told apart by value."""
-    return tuple(
-        (name, tuple(one.tolist()) if isinstance(one, np.ndarray) else one)
-        for name, one in values.items()
-    )
-
-
-@lru_cache(maxsize=4096)
-def _active(name: str, values: tuple[tuple[str, Any], ...]) -> ActiveEffect:
-    """An effect, its numbers clipped to the library's range: of neighbours most have the same."""
-    given, found = dict(values), {}
-    for one in library()[name].parameters:
-        if one.name in given:
-            clipped = np.clip(given[one.name], one.low, one.high)
-            found[one.name] = (
-                tuple(float(v) for v in clipped) if np.ndim(clipped) else float(clipped)
-            )
-    return ActiveEffect(name, found)
-
-
-_Moving = dict[tuple[str, str], tuple[NDArray[np.int64], NDArray[np.int64] | None]]
-
-
-def _moving(meanings: Sequence[Meaning], record: int) -> _Moving:
-    """Of each number in one run: which nuisances move it, and where; None: it has no places."""
-    found: dict[tuple[str, str], list[tuple[int, int]]] = {}
-    for i, one in enumerate(meanings):
-        if one.record in (-1, record):
-            where = one.axis if one.effect == "pose_zero" else one.cable - 1
-            found.setdefault((one.effect, one.parameter), []).append((i, where))
-    return {
-        key: (np.array([i for i, _ in pairs]),
-              None if pairs[0][1] < 0 else np.array([where for _, where in pairs]))
-        for key, pairs in found.items()
-    }  # fmt: skip
