@@ -1,9 +1,4 @@
-"""Force and moment of all cables on the platform, and their tensions, at one step.
-
-numba caches `push` with all it calls and looks at this file alone to see whether that is stale:
-after a change to the laws in `fibre`, `friction`, `loads`, `pulley` or `strings`, clear the cache
-(remove this package's __pycache__).
-"""
+"""Force and moment of all cables on the platform, and their tensions, at one step."""
 
 import numpy as np
 from numpy.typing import NDArray
