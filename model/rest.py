@@ -15,9 +15,10 @@ from model.machine import Machine
 
 Array = NDArray[np.float64]
 
-MOST_ROUNDS = 12
+MOST_ROUNDS = 60
 CLOSE_M = 1e-10
-"""Rounds end when the platform moves by less than this."""
+"""Rounds end when the platform moves by less than this. Holds and stops bend, one at each hook: it
+takes a dozen rounds to find which of them are met."""
 
 STEP = 1e-6
 """Of the differences of the pose, m and rad."""

@@ -68,10 +68,6 @@ class Steps:
         extra = method.nodes.size - method.step_weights.size
         return needed + extra * int(np.count_nonzero(inside))
 
-    def stage_s(self, nodes: Array) -> Array:
-        """Times of a method's stages, shape (n, stages), s."""
-        return self.point_s[:-1, None] + nodes * self.step_s[:, None]
-
 
 def steps_a_row(output_rate_hz: float, longest_step_s: float, *, join: bool) -> tuple[int, int]:
     """Steps between two outputs, and outputs passed in a step; one of them is 1."""

@@ -21,6 +21,7 @@ from model.method import Method, find_method
 from model.motion import Motion, RampedSine
 from model.rest import rest_state
 from model.steps import Steps, divide
+from model.tabulated import drive_at_stages
 
 Array = NDArray[np.float64]
 
@@ -191,6 +192,12 @@ class Task:
         """The drive at any times; see `model.drive.drive_table`."""
         return drive_table(self.nominal_machine, self.driven, time_s, within_s, self.drive_kind)
 
+    def drive_of_steps(self, method: Method, point_s: Array) -> Array:
+        """The drive at the stages of some steps, which are not kept."""
+        return drive_at_stages(
+            self.nominal_machine, self.driven, point_s, method.nodes, self.drive_kind
+        )
+
     def drive_at_outputs(self, steps: Steps) -> Array:
         """The drive at each output: what a winch has paid out; else one row that is not read."""
         if self.drive_kind == "wrench":
@@ -286,6 +293,4 @@ class DriveKey:
 def _cached_table(key: DriveKey) -> Array:
     """Tables of some megabytes: a fit to several runs asks thousands of times for a few of them."""
     nodes = find_method(key.method).nodes
-    return drive_table(
-        key.machine, key.motion, key.steps.stage_s(nodes), key.steps.middle_s, key.kind
-    )
+    return drive_at_stages(key.machine, key.motion, key.steps.point_s, nodes, key.kind)
