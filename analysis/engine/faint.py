@@ -7,8 +7,8 @@ far closer than the driven motion does. All that recording, parameters and candi
 brought into some hundred orthonormal directions; white noise stays white in them.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,8 +34,28 @@ FORMS = 20
 """An error of form lies in few directions, and in which is not known: in each it may be as large as
 if there were so many."""
 
+CLOSE = 0.05
+"""Where two simulations differ by no more than this, squared, of a sample's noise, on average, what
+a candidate does beside the one is what it does beside the other."""
+
+KEPT = 2.5e7
+"""What all candidates do to all samples is kept where it is no more numbers than this: 200 MB."""
+
 INDEPENDENT = 1e-9
 """Directions that hold less than this share of the strongest one's power are rounding."""
+
+
+Place = tuple[str, int, int]
+"""Of a term: candidate, variant, and which of its terms."""
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What is left about some numbers, and what one unit of each term does there, shape (n,)."""
+
+    telling: float
+    residual: Array
+    changes: Mapping[Place, Array]
 
 
 @dataclass(frozen=True)
@@ -55,6 +75,8 @@ class Faint:
         Candidate that is on -> what its free numbers do, shape (f, k).
     rotation
         Nuisances of directions, shape (nuisances, p).
+    seen
+        Of candidates that are not on, for what is near.
     """
 
     followed: Followed
@@ -62,6 +84,7 @@ class Faint:
     terms: Columns
     own: Mapping[str, Array]
     rotation: Array
+    seen: _Seen
 
 
 def faint(
@@ -69,6 +92,7 @@ def faint(
     followed: Followed,
     candidates: Sequence[Candidate],
     progress: Progress | None = None,
+    near: Faint | None = None,
 ) -> Faint:
     """What could still be there, as far as the ring was followed.
 
@@ -82,6 +106,9 @@ def faint(
         What to look for; of one that is on, each term beside what it is.
     progress
         Told of it.
+    near
+        The same about other numbers: where those come to the same, what candidates do beside them
+        is not simulated again.
     """
     followed = followed.about or followed
     samples = Samples(system, everything=True, share=followed.telling)
@@ -92,32 +119,23 @@ def faint(
     known = np.zeros((0, len(here)))
     if followed.columns is not None and followed.fresh and followed.telling == 1.0:
         known = followed.columns
-    points = points[len(known) :]
-    places: list[tuple[str, int, int]] = []
-    scales = list(steps[len(known) :])
+    kept = _kept(near, followed, here)
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
-    on = followed.point.effects
-    for candidate in candidates:
-        # What is there or not is there as a whole.
-        small = 1.0 if candidate.grows or candidate.fixed else SMALL
-        there = on.get(candidate.name, Setting({}))
-        for v, shapes in enumerate(_variants(candidate, followed.point)):
-            for k, term in enumerate(candidate.terms):
-                if (candidate.name, term.name) not in same:
-                    more = there.values.get(term.name, 0.0) + small * term.step
-                    setting = Setting({**there.values, term.name: more}, shapes)
-                    effects = {**on, candidate.name: setting}
-                    points.append(Point(followed.nuisance, effects, "as_is"))
-                    places.append((candidate.name, v, k))
-                    scales.append(small * term.step)
+    asked = _asked(candidates, followed.point, {*same})
+    places = [place for place in asked if place not in kept]
+    points = [*points[len(known) :], *(asked[place][0] for place in places)]
+    sizes = np.array([*steps[len(known) :], *(asked[place][1] for place in places)])
     rows: list[Array] = []
     for first in range(0, len(points), BATCH):
         rows += [here - one for one in samples.residuals(points[first : first + BATCH])]
         if progress is not None:
             progress(len(rows), len(points))
+    changes = np.concatenate([known, np.array(rows).reshape(-1, len(here)) / sizes[:, None]])
+    seen = _Seen(followed.telling, here, dict(zip(places, changes[numbers:], strict=True)))
+    old = [place for place in asked if place in kept]
+    if old:
+        changes, places = np.concatenate([changes, [kept[one] for one in old]]), places + old
     # A simulation that came to nothing tells nothing.
-    changes = np.array(rows).reshape(-1, len(here)) / np.array(scales)[:, None]
-    changes = np.concatenate([known, changes])
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     allowed = noise_leaves(system.bundles)
     inside, residual_inside, noise = _compressed(changes, here, allowed)
@@ -141,7 +159,42 @@ def faint(
         labels=_labels(size),
         used=used,
     )
-    return Faint(followed, problem, terms, own, rotation)
+    if near is not None and kept:
+        seen = near.seen
+    elif changes.size > KEPT:
+        seen = replace(seen, changes={})
+    return Faint(followed, problem, terms, own, rotation, seen)
+
+
+def _asked(
+    candidates: Sequence[Candidate], at: Point, same: Container[tuple[str | None, str | None]]
+) -> dict[Place, tuple[Point, float]]:
+    """What is simulated for each term that is no nuisance, and how much of it is on there."""
+    found: dict[Place, tuple[Point, float]] = {}
+    for candidate in candidates:
+        # What is there or not is there as a whole.
+        small = 1.0 if candidate.grows or candidate.fixed else SMALL
+        there = at.effects.get(candidate.name, Setting({}))
+        for v, shapes in enumerate(_variants(candidate, at)):
+            for k, term in enumerate(candidate.terms):
+                if (candidate.name, term.name) not in same:
+                    more = there.values.get(term.name, 0.0) + small * term.step
+                    setting = Setting({**there.values, term.name: more}, shapes)
+                    effects = {**at.effects, candidate.name: setting}
+                    point = Point(at.nuisance, effects, "as_is")
+                    found[candidate.name, v, k] = point, small * term.step
+    return found
+
+
+def _kept(near: Faint | None, followed: Followed, here: Array) -> dict[Place, Array]:
+    """What terms do that are not on, as it is known from what comes to the same."""
+    if near is None or near.seen.telling != followed.telling:
+        return {}
+    off = near.seen.residual - here
+    if not float(off @ off) < CLOSE * len(here):
+        return {}
+    on = {*near.followed.point.effects, *followed.point.effects}
+    return {place: row for place, row in near.seen.changes.items() if place[0] not in on}
 
 
 def _variants(candidate: Candidate, at: Point) -> Sequence[Mapping[str, float]]:

@@ -145,6 +145,6 @@ class Leader:
         if known is None or known.nuisance is not there.nuisance or known.state is not there.state:
             on = [self._refiner.candidates[name] for name in about.names]
             asked = [*others_beside(self._refiner, about), *(one for one in on if is_placed(one))]
-            self._asked = faint(self._system, about, asked)
+            self._asked = faint(self._system, about, asked, near=self._asked)
         assert self._asked is not None
         return self._asked

@@ -3,7 +3,9 @@
 A step is Gauss and Newton's, by differences that serve until it leaves where they hold.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -66,6 +68,9 @@ HALFWAY = 0.5
 
 DAMPINGS = (10.0, 100.0, 1e3, 1e4, 1e6, 1e8)
 """as if everything were known so much better where it is (Levenberg 1944, Marquardt 1963)."""
+
+ABREAST = 2
+"""So many are simulated together, where the second may turn out not to be wanted."""
 
 MORE, LONGER, LONGEST = 1.25, 2.0, 4.0
 """One that brings so much more than it promises is taken farther, up to that many times."""
@@ -237,19 +242,14 @@ class Way:
         worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
         if promised < max(worth, CATCHES_UP * (before - best)):
             return 0.0
-        found = self._along(target, inside, before)
-        if found.fell < HALFWAY * promised:
-            # Differences hold over less than that: shorter, and least along what tells least.
-            for damping in DAMPINGS:
-                shorter = bounded(matrix + damping * known, right, lows, highs)
-                nearer = self._along(shorter, inside, before)
-                if found.fell > max(nearer.fell, 0.0):
-                    break
-                found = max(found, nearer, key=lambda one: one.fell)
+        # Differences may hold over less than that: shorter steps, and least along what tells least.
+        damped = (matrix + damping * known for damping in DAMPINGS)
+        shorter = (bounded(one, right, lows, highs) for one in damped)
+        found = self._longest(chain([target], shorter), HALFWAY * promised, inside, before)
         # Along a valley that turns, differences promise too little: a step is too short.
         times = LONGER
         while times <= LONGEST and found.fell > MORE * promised:
-            farther = self._along(times * target, inside, before)
+            (farther,) = self._along([times * target], inside, before)
             if farther.fell < found.fell:
                 break
             found, times = farther, times * LONGER
@@ -265,13 +265,34 @@ class Way:
             self._columns = None
         return found.fell
 
-    def _along(self, change: Array, inside: NDArray[np.bool_], before: float) -> "_Step":
-        """What a step comes to."""
-        there = self.at.moved(change, 1.0)
-        (residual,) = self._samples.residuals([there.point], self._seen)
-        left = residual[inside]
-        now = float(left @ left) + self._known.cost(there.numbers)
-        return _Step(there, residual, before - now)
+    def _longest(
+        self, changes: Iterator[Array], enough: float, inside: NDArray[np.bool_], before: float
+    ) -> _Step:
+        """The first step, where it brings enough; else the best of ever shorter ones."""
+        best: _Step | None = None
+        # Two at a time: there are two processes where there are any.
+        while pair := list(islice(changes, ABREAST)):
+            for one in self._along(pair, inside, before):
+                if best is not None and best.fell > max(one.fell, 0.0):
+                    return best
+                if best is None and one.fell >= enough:
+                    return one
+                best = one if best is None else max(best, one, key=lambda step: step.fell)
+        assert best is not None
+        return best
+
+    def _along(
+        self, changes: Sequence[Array], inside: NDArray[np.bool_], before: float
+    ) -> list[_Step]:
+        """What steps come to."""
+        found = []
+        ends = [self.at.moved(change, 1.0) for change in changes]
+        residuals = self._samples.residuals([one.point for one in ends], self._seen)
+        for there, residual in zip(ends, residuals, strict=True):
+            left = residual[inside]
+            now = float(left @ left) + self._known.cost(there.numbers)
+            found.append(_Step(there, residual, before - now))
+        return found
 
     def _learn(self, there: Followed, found: Array) -> None:
         """Go there, and let what was found correct the differences (Broyden 1965)."""

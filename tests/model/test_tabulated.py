@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-import model.tabulated as tabulated
 from cdpr8.rigfile import Excitation, Rig
-from model import Task
+from model import Task, tabulated
 from model.drive import drive_table
 from model.library.selection import ActiveEffect
 from model.method import find_method
@@ -27,9 +26,7 @@ def both(task: Task, step_s: float | None = None) -> tuple[Array, Array]:
     """The table, and the same computed at every stage."""
     steps = task.steps(DOP853, 333.0, step_s)
     stage_s = steps.point_s[:-1, None] + DOP853.nodes * steps.step_s[:, None]
-    every = drive_table(
-        task.nominal_machine, task.driven, stage_s, steps.middle_s, task.drive_kind
-    )
+    every = drive_table(task.nominal_machine, task.driven, stage_s, steps.middle_s, task.drive_kind)
     return task.drive_at_stages(DOP853, steps), every
 
 
