@@ -27,6 +27,17 @@ CONTENDS, NO_BETTER = 100.0, 10.0
 """What is no farther behind the best, in squared misfit, is led through with differences of its
 own, unless what is on there without one of its causes is as good to within this."""
 
+WORTH_IT = 30.0
+"""Less than this, in squared misfit, is no reason to ask anything again."""
+
+HALFWAY = 0.5
+"""What is led once more from elsewhere starts so far from the likeliest parameters."""
+
+
+def elsewhere_than(led: Followed) -> Array:
+    """Parameters from which to lead once more, shape (p,): not those to which a hollow led."""
+    return HALFWAY * led.nuisance
+
 
 def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
     """Hypotheses, those that may be the best led on with what nuisances do about themselves.
@@ -101,9 +112,11 @@ def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) ->
     for one in led:
         if one.to_end:
             start = _parameters_of(system, one)
-            found.append(
-                follow_ring(system, start, everything=True, near=True, lent=nothing.columns)
-            )
+            # What nuisances do there, not where parameters alone had come to.
+            lent = one.columns if one.columns is not None else nothing.columns
+            alone = follow_ring(system, start, everything=True, near=True, lent=lent)
+            contends = cost_of(alone) < min(cost_of(one) for one in led) + CONTENDS
+            found.append(through(system, alone) if contends else alone)
     return min(found, key=cost_of)
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, fitted_there, one_more
 from analysis.engine.finder import Tell
@@ -13,12 +14,15 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.judge import NOISE
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
+from analysis.engine.whiten import noise_leaves
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
@@ -29,6 +33,11 @@ ABREAST, MOST_ABREAST = 12.0, 4
 MOST_OF_IT, BENT = 0.5, 25.0
 """Where parameters alone went past this share of the time, and lost the ring, those of a kind whose
 squares come to more than this, in sigmas, are led free of what is known of them."""
+
+
+MUCH = 0.2
+"""Where no cause promises to explain this share of what parameters leave beyond noise, those may
+have come to a hollow beside their valley: they are led once more from elsewhere."""
 
 
 class Found(NamedTuple):
@@ -98,6 +107,12 @@ def by_ring(
     about = faint(system, nothing, chosen, following)
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
+        if _is_hollow(system, nothing, faintly):
+            elsewhere = follow_ring(system, elsewhere_than(nothing), everything=True)
+            if cost_of(elsewhere) < cost_of(nothing) - WORTH_IT:
+                nothing = elsewhere
+                about = faint(system, nothing, chosen, following)
+                screened, faintly = faint_search(about, refiner, refiner.candidates)
         if not _promising(faintly):
             return Found(screened, faintly, faint=True)
         single = [one for one in faintly if len(one.hypothesis.parts) == 1]
@@ -115,6 +130,16 @@ def by_ring(
         rung = led.fitted()
         return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
     return Found((), (), faint=False, led=Led(led, single))
+
+
+def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:
+    """Whether parameters leave more than noise, and nothing promises to explain much of that."""
+    noise = max(noise_leaves(system.bundles), NOISE)
+    if nothing.left < noise or len(records_of(system)) >= SEVERAL:
+        return False
+    alone = next(one for one in faintly if not one.hypothesis.parts)
+    beyond = 0.5 * nothing.misfit * (1.0 - noise / nothing.left)
+    return faintly[0].log_score - alone.log_score < MUCH * beyond
 
 
 def _standing(system: System, nuisance: Array) -> Followed:

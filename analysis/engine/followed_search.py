@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from analysis.engine.all_samples import (
+    WORTH_IT,
     cost_of,
+    elsewhere_than,
     farthest_first,
     forms_of,
     tells_more,
@@ -24,10 +26,12 @@ from analysis.engine.kin import (
     part_of_the_way,
 )
 from analysis.engine.leader import Leader
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.places import is_placed, placed_again
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
+from analysis.engine.whiten import noise_leaves
 
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
@@ -39,10 +43,6 @@ share of the time, the ring tells nothing of what is left out."""
 EXPLAINS = 0.05
 """Beside a law that was led to the end, one cause more is tried where it promises to explain this
 share of what that leaves beyond noise."""
-
-WORTH_IT = 30.0
-"""Where it then does no better than this, in squared misfit, what it is, or may be without, is not
-asked."""
 
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
@@ -110,8 +110,21 @@ class FollowedSearch(Leader):
                 continue
             if waiting:
                 self._lead_rivals(last=True)
-            if self._best is best:
+            if self._best is best and not self._lead_elsewhere():
                 break
+
+    def _lead_elsewhere(self) -> bool:
+        """Lead the best once more from elsewhere, where it leaves what nothing explains."""
+        best = self._best
+        noise = max(noise_leaves(self._system.bundles), NOISE)
+        if best.state is None or not best.to_end or best.left < noise or best.names in self._anew:
+            return False
+        if len(records_of(self._system)) >= SEVERAL:
+            return False
+        self._anew.add(best.names)
+        start = elsewhere_than(best)
+        self._keep(follow_ring(self._system, start, best.state, everything=True))
+        return cost_of(self._best) < cost_of(best) - WORTH_IT
 
     def _is_kin(self, fitted: Fitted) -> bool:
         """Whether it will be led from where another law of its kind came to the end."""
