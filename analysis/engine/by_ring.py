@@ -35,7 +35,7 @@ MOST_OF_IT, BENT = 0.5, 25.0
 squares come to more than this, in sigmas, are led free of what is known of them."""
 
 
-MUCH = 0.2
+MUCH = 0.5
 """Where no cause promises to explain this share of what parameters leave beyond noise, those may
 have come to a hollow beside their valley: they are led once more from elsewhere."""
 
