@@ -16,12 +16,17 @@ ENDS = 1.03
 SPACING = ENDS * 2.0 * float(np.log(RATIO)) / float(np.pi)
 """Stiffness of each branch for a unit loss: the sum of w tau / (1 + w^2 tau^2) is pi / (2 ln R)."""
 
+A_DECADE = 2.0 * float(np.log(10.0)) / float(np.pi)
+"""Stiffness that the loss of a decade of frequencies adds above it, for a unit loss (Kramers and
+Kronig's relation)."""
+
 TURN = 2.0 * float(np.pi) * LOWEST_HZ
 """1 / tau of the first branch, rad/s."""
 
 
 def pull(
     loss_factor: Any,
+    decades_below: Any,
     q1: Any,
     q2: Any,
     q3: Any,
@@ -30,8 +35,9 @@ def pull(
     elongation: Any,
     stiffness: Any,
 ) -> Any:
-    """Sum of k_1 (Delta L - q_j)."""
-    return loss_factor * SPACING * stiffness * (5.0 * elongation - q1 - q2 - q3 - q4 - q5)
+    """Sum of k_1 (Delta L - q_j), and what loss below 0.2 Hz adds to the stiffness."""
+    branches = SPACING * (5.0 * elongation - q1 - q2 - q3 - q4 - q5)
+    return loss_factor * stiffness * (branches + A_DECADE * decades_below * elongation)
 
 
 def rates(q1: Any, q2: Any, q3: Any, q4: Any, q5: Any, elongation: Any) -> Any:
@@ -49,12 +55,16 @@ EFFECT = Effect(
     name="cable_structural",
     title="structural damping of the cable",
     acts=Acts.CABLE,
-    equation="T += k eta H[Delta L]; H by Maxwell branches at 0.2, 1, 5, 25 and 125 Hz",
+    equation="T += k eta (H[Delta L] + (2/pi) ln(10) D Delta L); H by Maxwell branches at 0.2, 1, "
+    "5, 25 and 125 Hz",
     source="Crandall, J. Sound Vib. 11 (1970) 3 (a causal law); branches: Bland, Linear "
     "Viscoelasticity (1960)",
     signature="quadrature constant over frequency (within 8 % from 0.5 to 40 Hz) and in "
     "proportion to amplitude; like Kelvin-Voigt at one frequency",
-    parameters=(Parameter("loss_factor", "1", 0.03, 0.0, 0.2, "eta", magnitude=True),),
+    parameters=(
+        Parameter("loss_factor", "1", 0.03, 0.0, 0.2, "eta", magnitude=True),
+        Parameter("decades_below", "1", 0.0, -0.5, 2.0, "D, of loss below 0.2 Hz"),
+    ),
     states=tuple(
         State(f"q{j}", "m", f"elongation of dashpot {j}", follows=True) for j in range(1, 6)
     ),

@@ -205,6 +205,18 @@ def test_structural_damping_does_not_know_frequency() -> None:
         assert answer.quadrature[1] == pytest.approx(wanted, rel=0.15)
 
 
+def test_loss_at_frequencies_below_the_branches_adds_stiffness_only() -> None:
+    effect = library()["cable_structural"]
+    loss = 0.05
+    none, decade = (
+        cable_response(effect, {"loss_factor": loss, "decades_below": decades}, cycles=4)
+        for decades in (0.0, 1.0)
+    )
+    wanted = loss * 2.0 / np.pi * np.log(10.0) * 1410 * 5e-3
+    assert decade.in_phase[1] - none.in_phase[1] == pytest.approx(wanted, rel=1e-3)
+    assert decade.quadrature[1] == pytest.approx(none.quadrature[1], rel=1e-6)
+
+
 def test_bouc_wen_is_rate_independent_with_a_loop() -> None:
     effect = library()["cable_hysteresis"]
     slow, fast = cable_response(effect), cable_response(effect, frequency_hz=8.0)
