@@ -2,6 +2,7 @@
 
 import pickle
 import signal
+import warnings
 from collections.abc import Sequence
 from concurrent.futures import BrokenExecutor, Future
 from functools import lru_cache
@@ -98,6 +99,8 @@ class Crew(Generic[Work, Done]):
     def _executor(self) -> Any:
         from loky import get_reusable_executor
 
+        # One that has grown is replaced, which nobody has to know.
+        warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
         return get_reusable_executor(
             max_workers=self._others, timeout=IDLE_S, initializer=_leave_interrupts
         )

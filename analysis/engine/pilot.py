@@ -117,13 +117,22 @@ def _contending(found: Sequence[Fitted]) -> list[Fitted]:
 def _lifted(
     system: System, records: Sequence[str], found: Sequence[Fitted], beside: Array
 ) -> list[Fitted]:
-    """Hypotheses of a pilot where they come to in all recordings, but for those that do not."""
-    lifted = []
+    """Hypotheses of a pilot where they come to in all recordings, but for those that do not.
+
+    Other laws of a kind, and a kind more or less, are led from there when all recordings are.
+    """
+    lifted: list[Fitted] = []
+    known: list[set[str]] = []
+    family = {one.name: one.family or one.name for one in system.candidates}
     for one in found:
+        kinds = {family[name] for name in one.hypothesis.names}
+        if any(kinds <= other or other <= kinds for other in known):
+            continue
         led = chained(system, Followed(one.point.nuisance, one.state), records, beside)
         if not led.stuck and led.state is not None:
             point = replace(led.state.point(led.nuisance), ring="as_is")
             lifted.append(replace(one, point=point, state=led.state))
+            known.append(kinds)
     return lifted
 
 
