@@ -23,6 +23,7 @@ from tests.model.test_mujoco import tendon_model
 pytestmark = pytest.mark.slow
 
 DURATION_S = 10.0
+DOP853 = find_method("dop853")
 
 
 def say(text: str) -> None:
@@ -131,6 +132,16 @@ def test_lanes_against_the_scalar_kernel(rig: Rig, paper: Excitation) -> None:
         say(f"\nlane kernel, {names}: {alone / lanes:.1f} times as fast as the scalar one")
         # The bar is 4, and missed since the scalar kernel became 2.8 times faster: docs/speed.md.
         assert alone > 1.5 * lanes
+
+
+def test_the_drives_table_against_every_stage(rig: Rig, paper: Excitation) -> None:
+    task = Task(rig, paper)
+    steps = task.steps(DOP853, 333.0, None)
+    stage_s = steps.point_s[:-1, None] + DOP853.nodes * steps.step_s[:, None]
+    every = least(lambda: task.drive_at(stage_s, steps.middle_s))
+    table = least(lambda: task.drive_of_steps(DOP853, steps.point_s))
+    say(f"\ndrive at all stages: interpolated {every / table:.1f} times as fast as computed")
+    assert every > 2.0 * table
 
 
 def test_cost_of_effects(rig: Rig, paper: Excitation) -> None:
