@@ -3,18 +3,15 @@
 A step is Gauss and Newton's, by differences that serve until it leaves where they hold.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, islice
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.evidence import bounded
-from analysis.engine.followed import FINE, Followed
-from analysis.engine.known import LOOSE, Known
+from analysis.engine.followed import Followed
+from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
+from analysis.engine.step import Stepper
 from analysis.engine.system import Array
 
 WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
@@ -62,26 +59,6 @@ differences hold: what everything does is simulated anew."""
 RENEWED = 4
 """Then, where what parameters do was lent by another hypothesis, it is what is on that is simulated
 anew, so many times."""
-
-HALFWAY = 0.5
-"""Of a step that brings less of what it promises, shorter ones are tried:"""
-
-DAMPINGS = (10.0, 100.0, 1e3, 1e4, 1e6, 1e8)
-"""as if everything were known so much better where it is (Levenberg 1944, Marquardt 1963)."""
-
-ABREAST = 2
-"""So many are simulated together, where the second may turn out not to be wanted."""
-
-MORE, LONGER, LONGEST = 1.25, 2.0, 4.0
-"""One that brings so much more than it promises is taken farther, up to that many times."""
-
-
-class _Step(NamedTuple):
-    """Where a step leads, what is left there, and by how much the cost falls."""
-
-    there: Followed
-    residual: Array
-    fell: float
 
 
 class Way:
@@ -226,73 +203,28 @@ class Way:
     def _step(self, inside: NDArray[np.bool_], best: float) -> float:
         """By how much the cost fell; nothing: there is no step."""
         assert self._columns is not None
-        at, here, columns = self.at.nuisance, self.here[inside], self._columns[:, inside]
-        # What a short window does not tell of a law stays about where it is (Levenberg 1944).
-        known = self._known.information.copy()
-        own = np.arange(len(at), len(known))
-        known[own, own] += (LOOSE * FINE / self._steps[own]) ** 2
-        matrix = columns @ columns.T + known
-        right = columns @ here - self._known.information @ (self.at.numbers - self._known.at)
-        lows, highs = np.full(len(right), -np.inf), np.full(len(right), np.inf)
-        if self.at.state is not None:
-            lows[len(at) :], highs[len(at) :] = self.at.state.bounds()
-        target = bounded(matrix, right, lows, highs)
-        before = float(here @ here) + self._known.cost(self.at.numbers)
-        promised = float(right @ target)
-        worth = WORTH_A_STEP if inside.all() else max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
-        if promised < max(worth, CATCHES_UP * (before - best)):
+        stepper = Stepper(self._samples, self._known, self.at, self.here, inside, self._seen)
+        before, least = stepper.before, WORTH_A_STEP
+        if not inside.all():
+            least = max(WORTH_A_STEP, WORTH_ON_THE_WAY * before)
+        step = stepper.step(self._columns, self._steps, max(least, CATCHES_UP * (before - best)))
+        if step is None:
             return 0.0
-        # Differences may hold over less than that: shorter steps, and least along what tells least.
-        damped = (matrix + damping * known for damping in DAMPINGS)
-        shorter = (bounded(one, right, lows, highs) for one in damped)
-        found = self._longest(chain([target], shorter), HALFWAY * promised, inside, before)
-        # Along a valley that turns, differences promise too little: a step is too short.
-        times = LONGER
-        while times <= LONGEST and found.fell > MORE * promised:
-            (farther,) = self._along([times * target], inside, before)
-            if farther.fell < found.fell:
-                break
-            found, times = farther, times * LONGER
+        promised, found = step
         if found.fell <= 0.0:
             self._serves = False
             return 0.0
         self._learn(found.there, found.residual)
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
             if self._serves and self._renewed < RENEWED:
-                self._lent, self._renewed = self._columns[: len(at)], self._renewed + 1
+                self._lent, self._renewed = (
+                    self._columns[: len(self.at.nuisance)],
+                    self._renewed + 1,
+                )
             else:
                 self._serves = False
             self._columns = None
         return found.fell
-
-    def _longest(
-        self, changes: Iterator[Array], enough: float, inside: NDArray[np.bool_], before: float
-    ) -> _Step:
-        """The first step, where it brings enough; else the best of ever shorter ones."""
-        best: _Step | None = None
-        # Two at a time: there are two processes where there are any.
-        while pair := list(islice(changes, ABREAST)):
-            for one in self._along(pair, inside, before):
-                if best is not None and best.fell > max(one.fell, 0.0):
-                    return best
-                if best is None and one.fell >= enough:
-                    return one
-                best = one if best is None else max(best, one, key=lambda step: step.fell)
-        assert best is not None
-        return best
-
-    def _along(
-        self, changes: Sequence[Array], inside: NDArray[np.bool_], before: float
-    ) -> list[_Step]:
-        """What steps come to."""
-        found = []
-        ends = [self.at.moved(change, 1.0) for change in changes]
-        residuals = self._samples.residuals([one.point for one in ends], self._seen)
-        for there, residual in zip(ends, residuals, strict=True):
-            left = residual[inside]
-            now = float(left @ left) + self._known.cost(there.numbers)
-            found.append(_Step(there, residual, before - now))
-        return found
 
     def _learn(self, there: Followed, found: Array) -> None:
         """Go there, and let what was found correct the differences (Broyden 1965)."""
