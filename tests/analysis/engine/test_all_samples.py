@@ -79,6 +79,24 @@ def test_what_came_from_parameters_of_another_kind_of_law_is_led_anew(
     assert led.misfit < 1.1 * COUNT
 
 
+def test_nothing_is_led_again_with_what_parameters_do_where_it_starts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    lent: list[object] = []
+
+    def spied(system: System, nuisance: Array, **how: object) -> Followed:
+        lent.append(how["lent"])
+        return Followed(nuisance, None, misfit=2.0 * COUNT)
+
+    monkeypatch.setattr(all_samples, "follow_ring", spied)
+    here, elsewhere = np.ones((1, COUNT)), np.zeros((1, COUNT))
+    law = Followed(np.zeros(1), state_of(DAMPING, 0.1), misfit=COUNT, columns=here)
+    law = replace(law, costs={1.0: COUNT})
+    nothing = Followed(np.zeros(1), None, misfit=3.0 * COUNT, columns=elsewhere)
+    assert all_samples.nothing_again(DAMPED, nothing, [law]).misfit == 2.0 * COUNT
+    assert lent[0] is here
+
+
 def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refiner) -> None:
     both = Hypothesis({"damping": Part(("rate",)), "step": Part(("high",), False, {"moment": 9.0})})
     values = {("damping", "rate"): 0.19, ("step", "high"): 0.002}

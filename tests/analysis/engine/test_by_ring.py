@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.by_ring import _bent
+from analysis.engine.by_ring import _bent, _is_hollow
+from analysis.engine.faint import faint
+from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
@@ -38,3 +40,18 @@ def test_parameters_that_were_bent_on_a_long_way_and_lost_are_led_free_of_what_i
     for one in found:
         assert one.values["tone", "share"] == pytest.approx(sigmas * SIGMA)
         assert one.point.nuisance[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("left", "rate", "hollow"), [(1.16, 0.0, True), (1.16, 0.2, False), (1.02, 0.0, False)],
+    ids=["nothing explains it", "a cause explains it", "it is noise"],
+)  # fmt: skip
+def test_parameters_are_in_a_hollow_where_nothing_promises_to_explain_what_they_leave(
+    left: float, rate: float, hollow: bool
+) -> None:
+    system = Tuned(ring(0.0, rate, 0.0, 0.0))
+    refiner = Refiner(system, *look(system))
+    nothing = Followed(np.zeros(1), None, misfit=left * 1000, left=left)
+    about = faint(system, nothing, system.candidates)
+    _, faintly = faint_search(about, refiner, refiner.candidates)
+    assert _is_hollow(system, nothing, faintly) == hollow

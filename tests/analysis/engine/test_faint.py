@@ -1,9 +1,15 @@
 """Faint causes: what changes span, in few directions."""
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import numpy as np
 import pytest
 
-from analysis.engine.faint import _compressed
+from analysis.engine.faint import _compressed, faint
+from analysis.engine.followed import Followed
+from analysis.engine.system import Point, Prediction
+from tests.analysis.engine.test_ring_fit import LetGo, ring
 
 
 def test_the_span_keeps_every_product_and_noise_alone_has_its_own_variance() -> None:
@@ -36,3 +42,31 @@ def test_noise_that_is_known_from_few_samples_is_as_large_as_it_shows_to_be() ->
     assert unsure == pytest.approx(1.21, abs=0.1)
     _, _, beyond = _compressed(changes, residual, allowed=1.05)
     assert beyond > 3.0 * unsure, "what noise does not allow may lie in any direction"
+
+
+@pytest.mark.parametrize(("tone", "anew"), [(1e-4, False), (0.05, True)])
+def test_what_candidates_do_is_not_simulated_again_beside_the_same_simulation(
+    tone: float, anew: bool
+) -> None:
+    class Counted(LetGo):
+        asked = 0
+
+        def simulate(
+            self, points: Sequence[Point], reduce: Callable[[Prediction], Any]
+        ) -> list[Any]:
+            self.asked += sum(bool(one.effects) for one in points)
+            return super().simulate(points, reduce)
+
+    system = Counted(ring(0.0, 0.0, 0.0, 0.0))
+    first = faint(system, Followed(np.zeros(1), None), system.candidates)
+    every, system.asked = system.asked, 0
+    there = Followed(np.array([tone]), None)
+    second = faint(system, there, system.candidates, near=first)
+    assert system.asked == (every if anew else 0)
+    alone = faint(system, there, system.candidates)
+    for place, columns in alone.terms.items():
+        # Directions are drawn anew each time: what they hold together is what counts.
+        known, fresh = second.terms[place], columns
+        assert known.T @ known == pytest.approx(fresh.T @ fresh, rel=1e-2)
+        promised = second.problem.residual @ known
+        assert promised == pytest.approx(alone.problem.residual @ fresh, rel=0.02)

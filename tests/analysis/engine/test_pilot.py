@@ -6,12 +6,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine import pilot
 from analysis.engine.by_ring import by_ring
+from analysis.engine.chain import Chained
+from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.hypothesis import Part as OfHypothesis
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
-from analysis.engine.pilot import _next, by_pilot
+from analysis.engine.pilot import _lifted, _next, by_pilot
 from analysis.engine.refine import Refiner
 from analysis.engine.search import search
+from analysis.engine.state import State
 from analysis.engine.system import (
     Array,
     Bundle,
@@ -20,6 +26,7 @@ from analysis.engine.system import (
     Point,
     Prediction,
     Segment,
+    System,
     Term,
 )
 
@@ -120,6 +127,34 @@ def test_what_is_left_out_is_found_in_all_with_fewer_simulated_recordings() -> N
     assert by_one.screened[0].hypothesis.names == ("damping",)
     assert by_one.fitted[0].left == pytest.approx(by_windows.fitted[0].left, abs=0.01)
     assert len(piloted.simulated) < len(alone.simulated)
+
+
+@pytest.mark.parametrize(
+    ("comes_through", "led"),
+    [(True, ["damping", "other"]), (False, ["damping", "damping+hardening", "other"])],
+)
+def test_what_has_a_kind_more_or_less_than_what_came_through_is_left_to_the_search_from_there(
+    monkeypatch: pytest.MonkeyPatch, comes_through: bool, led: list[str]
+) -> None:
+    system, tried = LetGoOften(), []
+    system.candidates = (*system.candidates, cause("other", 0.1))
+    known = {one.name: one for one in system.candidates}
+    looked = refiner(system)
+
+    def state(names: tuple[str, ...]) -> State:
+        hypothesis = Hypothesis({one: OfHypothesis((one,)) for one in names})
+        return State.at(hypothesis, {(one, one): 0.1 for one in names}, known)
+
+    def spied(whole: System, first: Followed, *_: object) -> Chained:
+        tried.append("+".join(first.names))
+        return Chained(np.zeros(5), first.state, (), "" if comes_through else "high")
+
+    monkeypatch.setattr(pilot, "chained", spied)
+    sets = (("damping",), ("damping", "hardening"), ("other",))
+    found = [looked.at(state(names), np.zeros(5)) for names in sets]
+    lifted = _lifted(system, ("low",), found, np.zeros(5))
+    assert tried == led
+    assert len(lifted) == (2 if comes_through else 0)
 
 
 def test_where_nothing_is_left_out_all_come_to_the_noise() -> None:
