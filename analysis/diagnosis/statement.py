@@ -57,17 +57,21 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def cables_of(cause: Cause) -> list[int]:
-    """Cables where it acts, by what stands out of its uncertainty; none: it has no choice."""
+    """Cables where it acts; none: it has no choice.
+
+    Those where it stands out of its uncertainty. Where it does nowhere, though it is there, its size
+    is open in all alike, as that of a friction within its presliding: then those where it is large.
+    """
     places = {term: re.fullmatch(r".*@(\d+)", term) for term in cause.values}
-    largest = max((abs(v) for v in cause.values.values()), default=0.0)
-    found = set()
-    for term, match in places.items():
-        if match is None:
-            continue
-        value, sigma = abs(cause.values[term]), cause.sigmas.get(term, 0.0)
-        if value > SHOWN_SHARE * largest and value > SHOWN_SIGMAS * sigma:
-            found.add(int(match.group(1)))
-    return sorted(found)
+    own = {term: int(match.group(1)) for term, match in places.items() if match is not None}
+    largest = max((abs(cause.values[term]) for term in own), default=0.0)
+    large = [term for term in own if abs(cause.values[term]) > SHOWN_SHARE * largest]
+    sure = [
+        term
+        for term in large
+        if abs(cause.values[term]) > SHOWN_SIGMAS * cause.sigmas.get(term, 0.0)
+    ]
+    return sorted({own[term] for term in sure or large})
 
 
 def _cause(cause: Cause, sides: dict[str, str], machine: RecordedMachine) -> dict[str, Any]:

@@ -1,0 +1,27 @@
+"""What the statement says of where a cause acts."""
+
+import pytest
+
+from analysis.diagnosis.statement import cables_of
+from analysis.engine.cause import Cause
+
+
+def cause(values: dict[str, float], sigma: float) -> Cause:
+    return Cause("pulley_presliding", 1.0, 1.0, (), values, dict.fromkeys(values, sigma),
+                 values, {}, {}, ())  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("values", "sigma", "cables"),
+    [
+        ({"coulomb_n@2": 0.3, "coulomb_n@7": 0.2, "coulomb_n@1": 0.01}, 0.02, [2, 7]),
+        ({"coulomb_n@2": 0.018}, 0.023, [2]),
+        ({"coulomb_n@2": 0.018, "coulomb_n@3": 0.017, "coulomb_n@4": 0.0}, 0.023, [2, 3]),
+        ({"drag_area_m2": 0.3}, 0.1, []),
+    ],
+    ids=["some stand out", "one, its size open", "two, their sizes open", "no choice"],
+)
+def test_cables_are_those_that_stand_out_or_all_where_sizes_are_open(
+    values: dict[str, float], sigma: float, cables: list[int]
+) -> None:
+    assert cables_of(cause(values, sigma)) == cables
