@@ -59,8 +59,8 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
 def cables_of(cause: Cause) -> list[int]:
     """Cables where it acts; none: it has no choice.
 
-    Those where it stands out of its uncertainty. Where it does nowhere, though it is there, its size
-    is open in all alike, as that of a friction within its presliding: then those where it is large.
+    Those where it stands out of its uncertainty. Where it does nowhere, though it is there, its
+    size is open, as that of a friction within its presliding: then those where it is large.
     """
     places = {term: re.fullmatch(r".*@(\d+)", term) for term in cause.values}
     own = {term: int(match.group(1)) for term, match in places.items() if match is not None}
