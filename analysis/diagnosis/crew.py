@@ -1,7 +1,10 @@
 """Processes that simulate beside this one: most of a simulation's time here is Python's."""
 
+import os
 import pickle
 import signal
+import threading
+import time
 import warnings
 from collections.abc import Sequence
 from concurrent.futures import BrokenExecutor, Future
@@ -20,6 +23,9 @@ Done_co = TypeVar("Done_co", covariant=True)
 
 IDLE_S = 60.0
 """A process that had nothing to do for so long ends."""
+
+LOOK_S = 2.0
+"""So often a copy looks whether the process that asked is still there."""
 
 FEW = 30
 """Work is done in this process until so much was done: to start others takes seconds."""
@@ -101,14 +107,20 @@ class Crew(Generic[Work, Done]):
 
         # One that has grown is replaced, which nobody has to know.
         warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
-        return get_reusable_executor(
-            max_workers=self._others, timeout=IDLE_S, initializer=_leave_interrupts
-        )
+        return get_reusable_executor(max_workers=self._others, timeout=IDLE_S, initializer=_serve)
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C is for the process that asked."""
+def _serve() -> None:
+    """Ctrl-C is for the process that asked; where that was killed, this one ends too."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if os.name == "posix":
+        threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+
+
+def _end_with(asker: int) -> None:
+    while os.getppid() == asker:
+        time.sleep(LOOK_S)
+    os._exit(1)
 
 
 @lru_cache(maxsize=2)

@@ -3,9 +3,13 @@
 import gc
 import os
 import signal
+import subprocess
+import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
+
+import pytest
 
 from analysis.diagnosis import crew
 from analysis.diagnosis.crew import Crew
@@ -43,6 +47,45 @@ def test_what_a_killed_process_had_to_do_is_done_here() -> None:
     found = team.do(range(9))
     assert [value for value, _ in found] == [i * i for i in range(9)]
     assert [value for value, _ in team.do(range(9))] == [i * i for i in range(9)]
+
+
+ASKS = """
+import os, sys, time
+sys.path.insert(0, {root!r})
+from analysis.diagnosis.crew import Crew
+from tests.analysis.test_crew import Squarer
+team = Crew(Squarer(0), 2)
+others = set()
+while not others:
+    others = {{process for _, process in team.do(range(9))}} - {{os.getpid()}}
+print(others.pop(), flush=True)
+time.sleep(60.0)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="asks /proc who is there")
+def test_where_the_process_that_asked_is_killed_its_copies_end() -> None:
+    root = str(Path(__file__).parents[2])
+    with subprocess.Popen(
+        [sys.executable, "-c", ASKS.format(root=root)], stdout=subprocess.PIPE, text=True
+    ) as asker:
+        assert asker.stdout is not None
+        other = int(asker.stdout.readline())
+        os.kill(other, 0)
+        asker.kill()
+    until_s = time.monotonic() + 30.0
+    while _is_there(other) and time.monotonic() < until_s:
+        time.sleep(0.1)
+    assert not _is_there(other)
+
+
+def _is_there(process: int) -> bool:
+    """Whether a process is there, and has not only left its number behind."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="ascii")
+    except FileNotFoundError:
+        return False
+    return state.rsplit(")", 1)[1].split()[0] != "Z"
 
 
 def test_little_work_starts_nobody() -> None:

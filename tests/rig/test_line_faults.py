@@ -74,8 +74,8 @@ def test_a_replugged_adapter_is_back_within_two_seconds(rig: Rig, tmp_path: Path
     recording = record(
         rig, rig_text(), tmp_path / "run", excitation=motion(3.5), clock=clock, machine=machine
     )
-    terminal.close()
     assert recording.fault is None
+    terminal.close()
     run = load_run(tmp_path / "run")
     lost = run.events[run.events["kind"] == "line_lost"]["t_s"]
     back = run.events[run.events["kind"] == "line_back"]["t_s"]
