@@ -99,14 +99,14 @@ class Crew(Generic[Work, Done]):
             pickle.dump(self._worker, file)
         self._path = Path(file.name)
         finalize(self, self._path.unlink, missing_ok=True)
+        # One that has grown is replaced, which nobody has to know.
+        warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
         executor = self._executor()
         self._ready = [executor.submit(_do, file.name, [work]) for _ in range(self._others)]
 
     def _executor(self) -> Any:
         from loky import get_reusable_executor
 
-        # One that has grown is replaced, which nobody has to know.
-        warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
         return get_reusable_executor(max_workers=self._others, timeout=IDLE_S, initializer=_serve)
 
 

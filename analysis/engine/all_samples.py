@@ -34,6 +34,11 @@ HALFWAY = 0.5
 """What is led once more from elsewhere starts so far from the likeliest parameters."""
 
 
+def noise_of(system: System) -> float:
+    """What noise may leave of a squared sample, on average, and the simulator's own error."""
+    return max(noise_leaves(system.bundles), NOISE)
+
+
 def elsewhere_than(led: Followed) -> Array:
     """Parameters from which to lead once more, shape (p,): not those to which a hollow led."""
     return HALFWAY * led.nuisance
@@ -109,14 +114,14 @@ def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) ->
         The closest.
     """
     found = [nothing]
+    contends = min(map(cost_of, led), default=0.0) + CONTENDS
     for one in led:
         if one.to_end:
             start = _parameters_of(system, one)
             # What nuisances do there, not where parameters alone had come to.
             lent = one.columns if one.columns is not None else nothing.columns
             alone = follow_ring(system, start, everything=True, near=True, lent=lent)
-            contends = cost_of(alone) < min(cost_of(one) for one in led) + CONTENDS
-            found.append(through(system, alone) if contends else alone)
+            found.append(through(system, alone) if cost_of(alone) < contends else alone)
     return min(found, key=cost_of)
 
 
@@ -186,7 +191,7 @@ def forms_of(
     form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
     explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
     hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
-    allowed = count * max(noise_leaves(refiner.system.bundles), NOISE)
+    allowed = count * noise_of(refiner.system)
     unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
     found = []
     for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):

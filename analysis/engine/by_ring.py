@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than
+from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than, noise_of
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, fitted_there, one_more
 from analysis.engine.finder import Tell
@@ -14,7 +14,6 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.judge import NOISE
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
@@ -22,7 +21,6 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
-from analysis.engine.whiten import noise_leaves
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
@@ -134,7 +132,7 @@ def by_ring(
 
 def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:
     """Whether parameters leave more than noise, and nothing promises to explain much of that."""
-    noise = max(noise_leaves(system.bundles), NOISE)
+    noise = noise_of(system)
     if nothing.left < noise or len(records_of(system)) >= SEVERAL:
         return False
     alone = next(one for one in faintly if not one.hypothesis.parts)

@@ -5,16 +5,16 @@ from typing import Literal
 
 import numpy as np
 
+from analysis.engine.all_samples import noise_of
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.confirm import Confirmation, confirm
 from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
-from analysis.engine.judge import NOISE, Judgement, judge
+from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
 from analysis.engine.search import Search, search
 from analysis.engine.system import Array, System
-from analysis.engine.whiten import noise_leaves
 
 Stage = Literal["align", "locate", "name", "confirm"]
 
@@ -118,7 +118,7 @@ def diagnose(
     problem = searched.calibrated.problem
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
-    noise = max(noise_leaves(system.bundles), NOISE)
+    noise = noise_of(system)
     judgement = judge(searched.fitted, candidates, lost=searched.lost, noise=noise)
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)

@@ -9,6 +9,7 @@ from analysis.engine.all_samples import (
     elsewhere_than,
     farthest_first,
     forms_of,
+    noise_of,
     tells_more,
     through,
 )
@@ -31,7 +32,6 @@ from analysis.engine.places import is_placed, placed_again
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
-from analysis.engine.whiten import noise_leaves
 
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
@@ -116,7 +116,7 @@ class FollowedSearch(Leader):
     def _lead_elsewhere(self) -> bool:
         """Lead the best once more from elsewhere, where it leaves what nothing explains."""
         best = self._best
-        noise = max(noise_leaves(self._system.bundles), NOISE)
+        noise = noise_of(self._system)
         if best.state is None or not best.to_end or best.left < noise or best.names in self._anew:
             return False
         if len(records_of(self._system)) >= SEVERAL:

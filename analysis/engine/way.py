@@ -217,10 +217,8 @@ class Way:
         self._learn(found.there, found.residual)
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
             if self._serves and self._renewed < RENEWED:
-                self._lent, self._renewed = (
-                    self._columns[: len(self.at.nuisance)],
-                    self._renewed + 1,
-                )
+                self._lent = self._columns[: len(self.at.nuisance)]
+                self._renewed += 1
             else:
                 self._serves = False
             self._columns = None
