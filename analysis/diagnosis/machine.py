@@ -18,6 +18,7 @@ from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Predictio
 from model import Task, simulate_many
 from model.library.discovery import library
 from model.motion import RampedSine
+from model.rest import tones_hz
 from model.simulator import run as simulate_task
 
 Array = NDArray[np.float64]
@@ -138,6 +139,13 @@ class RecordedMachine:
                     for bundle in of_record.get(place, none)])
             for place in range(len(points))
         ]  # fmt: skip
+
+    def tones_hz(self, point: Point) -> Array:
+        """See `Ringing`."""
+        asked = point.records
+        names = [one.run.name for one in self.recordings]
+        record = names.index(asked[0]) if asked else 0
+        return tones_hz(self.job(point, record).task.machine)
 
     def _shares(self, points: Sequence[Point], record: int) -> list[Share]:
         """One run of all points, in shares that are simulated side by side."""

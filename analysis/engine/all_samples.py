@@ -120,7 +120,9 @@ def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) ->
             start = _parameters_of(system, one)
             # What nuisances do there, not where parameters alone had come to.
             lent = one.columns if one.columns is not None else nothing.columns
-            alone = follow_ring(system, start, everything=True, near=True, lent=lent)
+            alone = follow_ring(
+                system, start, everything=True, near=True, ahead=one.costs, lent=lent
+            )
             found.append(through(system, alone) if cost_of(alone) < contends else alone)
     return min(found, key=cost_of)
 

@@ -1,12 +1,13 @@
 """What the ring tells: hypotheses by every sample, where they can be led to the noise."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than, noise_of
+from analysis.engine.cycles import valley
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, fitted_there, one_more
 from analysis.engine.finder import Tell
@@ -62,16 +63,20 @@ class Start(NamedTuple):
     nuisance
         Of parameters alone, in sigmas.
     hypotheses
-        What was found there, the best first, its point that of the whole system; what else they
-        say is of those recordings. None: parameters alone came to the noise.
+        What was found there, the best first, with nuisances of the whole system. None: parameters
+        alone came to the noise.
     """
 
     nuisance: Array
-    hypotheses: Sequence[Fitted] = ()
+    hypotheses: Sequence[Followed] = ()
 
 
 def by_ring(
-    refiner: Refiner, most_causes: int, tell: Tell | None, start: Start | None = None
+    refiner: Refiner,
+    most_causes: int,
+    tell: Tell | None,
+    start: Start | None = None,
+    enough: Callable[[Followed], bool] | None = None,
 ) -> Found:
     """By every sample, ring and all; no hypotheses, where that does not come to the noise.
 
@@ -85,6 +90,8 @@ def by_ring(
         Told of progress.
     start
         From where; None: from the likeliest parameters, by growing windows.
+    enough
+        Asked of the first hypothesis that explains to the noise: nothing more is led where it is.
     """
 
     def following(done: int, total: int) -> None:
@@ -95,11 +102,11 @@ def by_ring(
     if start is not None and start.hypotheses:
         nothing = _standing(system, start.nuisance)
         led = FollowedSearch(refiner, nothing, most_causes, following, near=True)
-        led.follow(start.hypotheses, ())
+        led.follow_from(start.hypotheses)
         rung = led.fitted() if led.arrived else None
         return Found((), rung or (), faint=rung is not None)
     at = refiner.calibrated.at if start is None else start.nuisance
-    nothing = follow_ring(system, at, everything=True)
+    nothing = valley(system, follow_ring(system, at, everything=True)).led
     near = nothing.left < FAINT and nothing.about is None
     chosen = [one for one in system.candidates if not one.fixed]
     about = faint(system, nothing, chosen, following)
@@ -121,6 +128,10 @@ def by_ring(
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else single[:1]
+    if enough is not None:
+        explains = led.lead_first(first)
+        if explains is not None and enough(explains):
+            return Found(screened, (), faint=True)
     if not near:
         first += _bent(refiner, nothing, at)
     led.follow(first, single, guessed=about.followed.telling < 1.0)

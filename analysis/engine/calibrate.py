@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from analysis.engine.evidence import Frame, Problem, directions
 from analysis.engine.lens import Lens
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
 from analysis.engine.system import Array, Point, System
 from analysis.engine.variance import base_variance, form_variance
@@ -123,6 +124,7 @@ def calibrate(
             break
         left = _misfit(data - features, at, base_variance(lens, features, data), used)
         fresh = (not better or not straight) and left < HOPELESS * int(used.sum())
+        fresh = fresh and len(records_of(system)) < SEVERAL
         if fresh:
             columns = nuisance_columns(system, lens, at, progress)
     base = base_variance(lens, features, data)

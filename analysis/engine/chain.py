@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.cycles import Valley, information_of, valley
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known, Told
 from analysis.engine.part import Part, records_of
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import FAR, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
@@ -22,6 +23,9 @@ from analysis.engine.way import LEAVES, STRAIN
 ANOTHER = 500.0
 """Where parameters alone have to go so far from what was known, squared and in standard deviations,
 something is left out, even if it then leaves nothing."""
+
+EARLY = 0.5
+"""What is lost before this share of the time, what others tell would not help."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ class Chained:
     stuck: str = ""
 
 
-def chained(system: System, first: Followed, records: Sequence[str], beside: Array) -> Chained:
+def chained(system: System, first: Valley, records: Sequence[str], beside: Array) -> Chained:
     """Lead recordings one after the other, the nearest next.
 
     Parameters
@@ -54,16 +58,16 @@ def chained(system: System, first: Followed, records: Sequence[str], beside: Arr
     system
         All recordings.
     first
-        Where some of them have come to: nuisances of that `Part`, and what is on.
+        Where some of them have come to, as a `Part`, and what they tell.
     records
         Which.
     beside
         Nuisances of the other recordings to begin with, of the whole system, in sigmas.
     """
     part = Part(system, records)
-    start = Followed(part.whole(first.nuisance, beside), first.state)
-    told = Told(start)
-    told.add(part, first, _information(part, first))
+    at = first.led
+    told = Told(Followed(part.whole(at.nuisance, beside), at.state))
+    told.add(part, *first)
     led = list(records)
     left = [one for one in records_of(system) if one not in led]
     later: list[str] = []
@@ -72,7 +76,9 @@ def chained(system: System, first: Followed, records: Sequence[str], beside: Arr
         nearest = min(left or later, key=lambda name: left_in(system, name, told.at))
         part = Part(system, (nearest,))
         known = told.of(part)
-        found = _led(part, told.at, known)
+        found, information = _led(part, told.at, known)
+        if found.share < EARLY:
+            return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
         if left:
             left.remove(nearest)
             if not _arrived(found, known) or _forced(part, found, known):
@@ -86,7 +92,10 @@ def chained(system: System, first: Followed, records: Sequence[str], beside: Arr
             continue
         else:
             later.remove(nearest)
-        told.add(part, found, _information(part, found))
+        before = told.at
+        told.add(part, found, information)
+        if told.at.state is None and told.at.strain > FAR:
+            return Chained(before.nuisance, None, tuple(led), nearest)
         led.append(nearest)
     return Chained(told.at.nuisance, told.at.state, tuple(led))
 
@@ -96,7 +105,7 @@ def _together(system: System, records: Sequence[str], at: Followed) -> Told:
     part = Part(system, records)
     found = follow_ring(part, part.own(at.nuisance), at.state, everything=True, near=True)
     told = Told(Followed(part.whole(found.nuisance, at.nuisance), found.state))
-    told.add(part, found, _information(part, found))
+    told.add(part, found, information_of(part, found))
     return told
 
 
@@ -107,9 +116,10 @@ def _forced(part: Part, found: Followed, known: Known) -> bool:
     return found.misfit > noise * count and known.cost(found.numbers) > STRAIN
 
 
-def _led(part: Part, at: Followed, known: Known) -> Followed:
+def _led(part: Part, at: Followed, known: Known) -> Valley:
     """A recording, led with what others told."""
-    return follow_ring(part, part.own(at.nuisance), at.state, everything=True, known=known)
+    led = follow_ring(part, part.own(at.nuisance), at.state, everything=True, known=known)
+    return valley(part, led, known, lower=True)
 
 
 def _arrived(found: Followed, known: Known) -> bool:
@@ -117,17 +127,6 @@ def _arrived(found: Followed, known: Known) -> bool:
     if found.state is not None:
         return found.share == 1.0 or found.to_end
     return found.share == 1.0 and known.cost(found.numbers) < ANOTHER
-
-
-def _information(part: Part, found: Followed) -> Array:
-    """What a part's samples tell of its numbers about where it was led to."""
-    if found.information is not None:
-        return found.information
-    samples = Samples(part, everything=True)
-    points, steps = found.neighbours()
-    here, *others = samples.residuals([found.point, *points])
-    columns = (here - np.stack(others)) / steps[:, None]
-    return np.asarray(columns @ columns.T)
 
 
 def left_in(system: System, record: str, at: Followed) -> float:

@@ -84,10 +84,7 @@ class FollowedSearch(Leader):
         seen
             They are likely by lines as well: what explains but a stretch is looked beside.
         """
-        for number, one in enumerate(self._fresh(hypotheses)):
-            if number > 0 and (self._effort > self._most or self._is_kin(one)):
-                continue
-            self._lead(one.point.nuisance, one.state, near=self._near)
+        self.lead_first(hypotheses)
         if not self._led:
             return
         farther = self._best.to_end or self._best.share >= self._nothing.share + EARLY
@@ -102,6 +99,23 @@ class FollowedSearch(Leader):
                 self._lead(one.point.nuisance, one.state, near=self._near)
         if guessed and not self._near:
             self._lead_alike(others)
+        self._lead_beside()
+
+    def follow_from(self, begun: Sequence[Followed]) -> None:
+        """Lead hypotheses of some of the recordings in all of them.
+
+        Parameters
+        ----------
+        begun
+            Where they came to, the best first.
+        """
+        for number, one in enumerate(begun):
+            if one.state is not None and not (number > 0 and self._effort > self._most):
+                self._lead(one.nuisance, one.state, near=self._near)
+        self._lead_beside()
+
+    def _lead_beside(self) -> None:
+        """From the best on: rivals, one cause more, one less."""
         for _ in range(self._most_causes):
             self._one_less(self._best)
             waiting = not self._lead_rivals()
@@ -112,6 +126,22 @@ class FollowedSearch(Leader):
                 self._lead_rivals(last=True)
             if self._best is best and not self._lead_elsewhere():
                 break
+
+    def lead_first(self, hypotheses: Sequence[Fitted]) -> Followed | None:
+        """Lead hypotheses, and look no farther; the best where it explains to the noise.
+
+        Parameters
+        ----------
+        hypotheses
+            Those to try.
+        """
+        for number, one in enumerate(self._fresh(hypotheses)):
+            if number > 0 and (self._effort > self._most or self._is_kin(one)):
+                continue
+            self._lead(one.point.nuisance, one.state, near=self._near)
+        best = self._best
+        explains = best.to_end and best.left < noise_of(self._system)
+        return best if explains and best.state is not None else None
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best once more from elsewhere, where it leaves what nothing explains."""

@@ -6,7 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from analysis.engine.system import Array, Bundle, Candidate, Nuisance, Point, Prediction, System
+from analysis.engine.system import (
+    Array,
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Ringing,
+    System,
+)
 
 SEVERAL = 3
 """So many recordings and more are led one after the other: all at once takes too long."""
@@ -62,12 +71,20 @@ class Part:
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""
-        asked = [
-            replace(one, nuisance=self.whole(one.nuisance), records=self._records) for one in points
-        ]
         return self._system.simulate(
-            asked, lambda prediction: reduce([prediction[i] for i in self._chosen])
+            [self._of_whole(one) for one in points],
+            lambda prediction: reduce([prediction[i] for i in self._chosen]),
         )
+
+    def tones_hz(self, point: Point) -> Array:
+        """See `Ringing`."""
+        if not isinstance(self._system, Ringing):
+            return np.zeros(0)
+        return self._system.tones_hz(self._of_whole(point))
+
+    def _of_whole(self, point: Point) -> Point:
+        """The same for the whole system, of this part's recordings."""
+        return replace(point, nuisance=self.whole(point.nuisance), records=self._records)
 
 
 def records_of(system: System) -> list[str]:

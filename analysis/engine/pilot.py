@@ -6,18 +6,18 @@ handed on to the next, and at the end all are led at once, over the little way t
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from analysis.engine.by_ring import Found, Start, by_ring
 from analysis.engine.chain import Chained, chained, left_in
+from analysis.engine.cycles import Valley, information_of, valley
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.ring_fit import FAINT, FAR, follow_ring
 from analysis.engine.system import Array, System
 
 CHAINS, PILOTS = 2, 3
@@ -55,17 +55,9 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         if pilot is None:
             break
         tried.append(pilot.records[0])
-        part = Part(system, pilot.records)
-        beside = at if pilot.nuisance is None else pilot.nuisance
-        start = None if pilot.nuisance is None else Start(part.own(pilot.nuisance))
-        found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start)
-        hypotheses = _contending(found.fitted)
-        lifted = _lifted(system, pilot.records, hypotheses, beside) if hypotheses else []
-        if lifted:
-            whole = by_ring(refiner, most_causes, tell, Start(lifted[0].point.nuisance, lifted))
-            if whole.fitted:
-                # What the pilot screened stays told, where all were led from what it found.
-                return whole._replace(screened=whole.screened or found.screened)
+        whole = _led_by(refiner, pilot, most_causes, tell)
+        if whole.fitted:
+            return whole
     return Found((), (), faint=False)
 
 
@@ -74,6 +66,32 @@ class _Pilot(NamedTuple):
 
     records: Sequence[str]
     nuisance: Array | None
+
+
+def _led_by(refiner: Refiner, pilot: _Pilot, most_causes: int, tell: Tell | None) -> Found:
+    """What all recordings say, from where a pilot leads; no hypotheses, where that is nowhere."""
+    system, at = refiner.system, refiner.calibrated.at
+    part = Part(system, pilot.records)
+    beside = at if pilot.nuisance is None else pilot.nuisance
+    start = None if pilot.nuisance is None else Start(part.own(pilot.nuisance))
+    wholes: list[Found] = []
+
+    def leads(begun: Sequence[Followed]) -> bool:
+        if begun:
+            wholes.append(by_ring(refiner, most_causes, tell, Start(begun[0].nuisance, begun)))
+        return bool(begun) and bool(wholes[-1].fitted)
+
+    def first(one: Followed) -> bool:
+        return leads(_lifted(system, part, [one], beside).free)
+
+    found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start, first)
+    if not (wholes and wholes[-1].fitted):
+        contending = [Followed(one.point.nuisance, one.state) for one in _contending(found.fitted)]
+        lifted = _lifted(system, part, contending, beside)
+        if not leads(lifted.free or lifted.strained):
+            return Found((), (), faint=False)
+    # What the pilot screened stays told, where all were led from what it found.
+    return wholes[-1]._replace(screened=wholes[-1].screened or found.screened)
 
 
 def _pilot(
@@ -90,13 +108,18 @@ def _pilot(
 def _nothing(system: System, at: Array, tell: Tell | None) -> list[Chained]:
     """Parameters alone, led through one recording after the other, until that comes through."""
     found: list[Chained] = []
+    begun: list[str] = []
     for _ in range(CHAINS):
-        record = _next(system, at, [one.led[0] if one.led else one.stuck for one in found])
+        # What could not be led with what others told may tell them more.
+        stuck = [one.stuck for one in found if one.stuck not in begun]
+        record = stuck[-1] if stuck else _next(system, at, begun)
         if record is None:
             break
+        begun.append(record)
         part = Part(system, (record,))
-        led = follow_ring(part, look(part, tell).calibrated.at, everything=True)
-        if led.share < 1.0:
+        first = follow_ring(part, look(part, tell).calibrated.at, everything=True)
+        led = valley(part, first, lower=True)
+        if led.led.share < 1.0:
             found.append(Chained(at, None, (), record))
             continue
         found.append(chained(system, led, (record,), at))
@@ -114,24 +137,35 @@ def _contending(found: Sequence[Fitted]) -> list[Fitted]:
     return causes[:MOST_LIFTED]
 
 
-def _lifted(
-    system: System, records: Sequence[str], found: Sequence[Fitted], beside: Array
-) -> list[Fitted]:
+class _Lifted(NamedTuple):
+    """Hypotheses that came through all recordings, and those for which parameters had to bend."""
+
+    free: list[Followed]
+    strained: list[Followed]
+
+
+def _lifted(system: System, part: Part, found: Sequence[Followed], beside: Array) -> _Lifted:
     """Hypotheses of a pilot where they come to in all recordings, but for those that do not.
 
     Other laws of a kind, and a kind more or less, are led from there when all recordings are.
     """
-    lifted: list[Fitted] = []
+    lifted = _Lifted([], [])
     known: list[set[str]] = []
     family = {one.name: one.family or one.name for one in system.candidates}
     for one in found:
-        kinds = {family[name] for name in one.hypothesis.names}
-        if any(kinds <= other or other <= kinds for other in known):
+        kinds = {family[name] for name in one.names}
+        if one.state is None or any(kinds <= other or other <= kinds for other in known):
             continue
-        led = chained(system, Followed(one.point.nuisance, one.state), records, beside)
-        if not led.stuck and led.state is not None:
-            point = replace(led.state.point(led.nuisance), ring="as_is")
-            lifted.append(replace(one, point=point, state=led.state))
+        at = Followed(one.nuisance, one.state.whole())
+        told = Valley(at, information_of(part, at))
+        led = chained(system, told, records_of(part), beside)
+        if led.stuck or led.state is None:
+            continue
+        through = Followed(led.nuisance, led.state)
+        if through.strain > FAR:
+            lifted.strained.append(through)
+        else:
+            lifted.free.append(through)
             known.append(kinds)
     return lifted
 

@@ -197,6 +197,19 @@ class State:
             return self
         return State.at(hypothesis, magnitudes, self.candidates)
 
+    def whole(self) -> "State":
+        """With every number of what acts in one place: a recording may not have told all of it."""
+        hypothesis, magnitudes = self.hypothesis, self.term_values()
+        for name, part in self.hypothesis.parts.items():
+            terms = self.candidates[name].terms
+            if not any(one.place for one in terms):
+                every = tuple(one.name for one in terms)
+                magnitudes = {(name, one): 0.0 for one in every} | magnitudes
+                hypothesis = hypothesis.plus(name, Part(every, part.shared, part.shapes))
+        if hypothesis.key == self.hypothesis.key:
+            return self
+        return State.at(hypothesis, magnitudes, self.candidates)
+
     def bounds(self) -> tuple[Array, Array]:
         """How far the free numbers may move from here, shapes by a third of their range a time."""
         lows, highs = [], []

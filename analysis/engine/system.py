@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -318,4 +318,13 @@ class System(Protocol):
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """Predict what would be recorded, without noise, and keep what `reduce` makes of it."""
+        ...
+
+
+@runtime_checkable
+class Ringing(Protocol):
+    """A system that says how its numbers move the tones that it rings in."""
+
+    def tones_hz(self, point: Point) -> Array:
+        """Its own tones in the first of its recordings, shape (k,), Hz; (0,): not known."""
         ...

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.engine.chain import Chained, chained
+from analysis.engine.cycles import valley
 from analysis.engine.part import Part
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.system import (
@@ -65,7 +66,7 @@ class Straight:
 def lead(system: Straight, record: str) -> Chained:
     part = Part(system, (record,))
     first = follow_ring(part, np.zeros(len(part.nuisances)), everything=True)
-    return chained(system, first, (record,), np.zeros(len(system.nuisances)))
+    return chained(system, valley(part, first), (record,), np.zeros(len(system.nuisances)))
 
 
 @pytest.mark.parametrize("first", NAMES)

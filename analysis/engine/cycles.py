@@ -1,0 +1,169 @@
+"""A ring that is a turn or more out of phase: other valleys, and how they are reached.
+
+Parameters at which a faint tone loses or gains a turn over the length of a recording fit nearly as
+well as those at which it is in phase, and between them lies a ridge (cycle skipping, as seismology
+has it: Virieux and Operto 2009). No step downhill leads over it. Where the next valleys lie follows
+from the tones themselves; and where they are hardly higher, the recording does not tell the tone,
+however narrow each valley is.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from analysis.engine.followed import Followed
+from analysis.engine.known import Known
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.system import Array, Ringing, System
+
+TURNS_RAD = (7.73, 14.07, 20.37)
+"""Where a tone that is so far out of phase at the end is in phase best on the whole: maxima of
+sin(x)/x."""
+
+NARROW_RAD = 1.5
+"""A tone that is known no better than this at the end has no other valley."""
+
+OPEN, OPEN_RAD = 150.0, 10.0
+"""Where the cost rises by no more than this, the tone is not told: it may be so far off as well."""
+
+FLAT = 0.3
+"""Where the cost rises by less than this share of what a single valley would have it rise by, there
+may be a lower one;"""
+
+MOST, RIDGES = 2, 3
+"""so many are tried, those where it rises least, and so many ridges are gone over."""
+
+WORTH_IT = 10.0
+"""A valley is lower where the cost is less by this."""
+
+
+class Valley(NamedTuple):
+    """Where a ring was followed to, and what its samples tell of numbers, shape (k, k)."""
+
+    led: Followed
+    information: Array
+
+
+class _Tone(NamedTuple):
+    """By how much one unit of each number moves a tone, shape (k,), and the tone's variance.
+
+    In rad, at the end of the recording.
+    """
+
+    moves: Array
+    variance: float
+
+
+class _Turn(NamedTuple):
+    """Where a tone is a turn off, by how much the cost rises there, and would in one valley."""
+
+    there: Followed
+    tone: _Tone
+    rise: float
+    single: float
+
+
+def valley(
+    system: System, led: Followed, known: Known | None = None, *, lower: bool = False
+) -> Valley:
+    """Where the ring was followed to, or beyond the ridges about there, if that is lower.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    led
+        Where to.
+    known
+        What is known of free numbers; None: priors of nuisances.
+    lower
+        Only what is lower at once is tried: what is told of open tones is of no use anyway.
+    """
+    known = Known.priors(led) if known is None else known
+    if not led.to_end:
+        # What was lost on the way tells nothing.
+        return Valley(led, np.zeros_like(known.information))
+    information = information_of(system, led)
+    turns = _turns(system, led, known, information)
+    for _ in range(RIDGES):
+        found = _beyond(system, led, known, _starts(turns, lower=lower))
+        if found is None:
+            break
+        led, information = found, information_of(system, found)
+        turns = _turns(system, led, known, information)
+    for tone in {id(one.tone): one.tone for one in turns if one.rise < OPEN}.values():
+        surer = 1.0 / tone.variance - 1.0 / OPEN_RAD**2
+        information = information - surer * np.outer(tone.moves, tone.moves)
+    return Valley(led, information)
+
+
+def information_of(system: System, led: Followed) -> Array:
+    """What samples tell of free numbers about where they were led to, shape (numbers, numbers)."""
+    if led.information is not None:
+        return led.information
+    points, steps = led.neighbours()
+    here, *others = Samples(system, everything=True).residuals([led.point, *points])
+    columns = (here - np.stack(others)) / steps[:, None]
+    return np.asarray(columns @ columns.T)
+
+
+def _starts(turns: Sequence[_Turn], *, lower: bool) -> list[Followed]:
+    """Where a lower valley may begin, the likeliest first."""
+    flat = (one for one in turns if one.rise < (0.0 if lower else FLAT * one.single))
+    return [one.there for one in sorted(flat, key=lambda one: one.rise / one.single)[:MOST]]
+
+
+def _beyond(
+    system: System, led: Followed, known: Known, starts: Sequence[Followed]
+) -> Followed | None:
+    """The first of some valleys that is lower; None: none is."""
+    for start in starts:
+        found = follow_ring(
+            system, start.nuisance, start.state, everything=True, near=True, known=known
+        )
+        if _cost(found, known) < _cost(led, known) - WORTH_IT:
+            return found
+    return None
+
+
+def _turns(system: System, led: Followed, known: Known, information: Array) -> list[_Turn]:
+    """Places where one tone is a turn off, and all else is as likely as it then can be."""
+    found: list[tuple[Followed, _Tone, float]] = []
+    covariance = np.linalg.pinv(information + known.information, hermitian=True)
+    for moves in _tones_by_number(system, led):
+        along = covariance @ moves
+        tone = _Tone(moves, float(moves @ along))
+        if 0.0 < tone.variance < NARROW_RAD**2:
+            for turn_rad in (sign * one for one in TURNS_RAD for sign in (1.0, -1.0)):
+                there = led.moved(turn_rad / tone.variance * along, 1.0)
+                single = turn_rad**2 / tone.variance
+                if known.cost(there.numbers) - known.cost(led.numbers) < max(OPEN, FLAT * single):
+                    found.append((there, tone, single))
+    if not found:
+        return []
+    residuals = Samples(system, everything=True).residuals([one.point for one, _, _ in found])
+    here = _cost(led, known)
+    return [
+        _Turn(there, tone, float(left @ left) + known.cost(there.numbers) - here, single)
+        for (there, tone, single), left in zip(found, residuals, strict=True)
+    ]
+
+
+def _tones_by_number(system: System, led: Followed) -> Array:
+    """By how much one unit of each number moves each tone, shape (tones, numbers), in rad.
+
+    At the end of the longest recording.
+    """
+    if not isinstance(system, Ringing):
+        return np.zeros((0, len(led.numbers)))
+    points, steps = led.neighbours()
+    here = system.tones_hz(led.point)
+    moved = np.array([system.tones_hz(point) - here for point in points]) / steps[:, None]
+    longest_s = max(float(one.t_s[-1] - one.t_s[0]) for one in system.bundles)
+    return np.asarray(2.0 * np.pi * longest_s * moved.T)
+
+
+def _cost(led: Followed, known: Known) -> float:
+    return led.misfit + known.cost(led.numbers)
