@@ -50,7 +50,13 @@ class Chained:
     stuck: str = ""
 
 
-def chained(system: System, first: Valley, records: Sequence[str], beside: Array) -> Chained:
+def chained(
+    system: System,
+    first: Valley,
+    records: Sequence[str],
+    beside: Array,
+    most_strain: float = FAR,
+) -> Chained:
     """Lead recordings one after the other, the nearest next.
 
     Parameters
@@ -63,6 +69,9 @@ def chained(system: System, first: Valley, records: Sequence[str], beside: Array
         Which.
     beside
         Nuisances of the other recordings to begin with, of the whole system, in sigmas.
+    most_strain
+        What nuisances may come to, squared and in sigmas: the recording that takes them farther
+        is one that could not be led.
     """
     part = Part(system, records)
     at = first.led
@@ -94,8 +103,8 @@ def chained(system: System, first: Valley, records: Sequence[str], beside: Array
             later.remove(nearest)
         before = told.at
         told.add(part, found, information)
-        if told.at.state is None and told.at.strain > FAR:
-            return Chained(before.nuisance, None, tuple(led), nearest)
+        if told.at.strain > most_strain:
+            return Chained(before.nuisance, before.state, tuple(led), nearest)
         led.append(nearest)
     return Chained(told.at.nuisance, told.at.state, tuple(led))
 

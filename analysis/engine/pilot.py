@@ -8,6 +8,8 @@ handed on to the next, and at the end all are led at once, over the little way t
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from analysis.engine.by_ring import Found, Start, by_ring
 from analysis.engine.chain import Chained, chained, left_in
 from analysis.engine.cycles import Valley, information_of, valley
@@ -82,7 +84,7 @@ def _led_by(refiner: Refiner, pilot: _Pilot, most_causes: int, tell: Tell | None
         return bool(begun) and bool(wholes[-1].fitted)
 
     def first(one: Followed) -> bool:
-        return leads(_lifted(system, part, [one], beside).free)
+        return leads(_lifted(system, part, [one], beside, FAR).free)
 
     found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start, first)
     if not (wholes and wholes[-1].fitted):
@@ -144,7 +146,13 @@ class _Lifted(NamedTuple):
     strained: list[Followed]
 
 
-def _lifted(system: System, part: Part, found: Sequence[Followed], beside: Array) -> _Lifted:
+def _lifted(
+    system: System,
+    part: Part,
+    found: Sequence[Followed],
+    beside: Array,
+    most_strain: float = np.inf,
+) -> _Lifted:
     """Hypotheses of a pilot where they come to in all recordings, but for those that do not.
 
     Other laws of a kind, and a kind more or less, are led from there when all recordings are.
@@ -158,7 +166,7 @@ def _lifted(system: System, part: Part, found: Sequence[Followed], beside: Array
             continue
         at = Followed(one.nuisance, one.state.whole())
         told = Valley(at, information_of(part, at))
-        led = chained(system, told, records_of(part), beside)
+        led = chained(system, told, records_of(part), beside, most_strain)
         if led.stuck or led.state is None:
             continue
         through = Followed(led.nuisance, led.state)
