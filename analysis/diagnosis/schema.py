@@ -88,11 +88,21 @@ class Balance(Open):
     means: str
 
 
+class Likely(Open):
+    """An effect that is not named, and likely all the same."""
+
+    effect: str
+    probability: float = Field(ge=0.0, le=1.0)
+
+
 class Statement(Open):
     """A diagnosis."""
 
     verdict: Verdict
     causes: list[Cause]
+    not_ruled_out: list[Likely] = Field(
+        default=[], description="where the verdict is none: effects likelier than a tenth"
+    )
     remains: Remains
     fit: Fit
     next_experiment: Experiment | None

@@ -1,6 +1,7 @@
 """A diagnosis as the JSON of design, section 6."""
 
 import re
+from collections.abc import Sequence
 from math import hypot
 from typing import Any
 
@@ -32,15 +33,23 @@ SHOWN_SHARE = 0.1
 
 SHOWN_SIGMAS = 2.0
 
+NOT_RULED_OUT = 0.1
+"""Where nothing is named, what is likelier than this is told."""
+
 
 def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
     """The JSON of design, section 6, as a dictionary."""
     sides = {one.name: one.side for one in machine.candidates}
     judgement, remains = diagnosis.judgement, diagnosis.remains
     causes = [] if judgement is None else [_cause(one, sides, machine) for one in judgement.causes]
+    likely: list[dict[str, Any]] = []
+    if judgement is not None and diagnosis.search is not None and diagnosis.verdict == "none":
+        sets = [one.hypothesis.names for one in diagnosis.search.fitted]
+        likely = not_ruled_out(sets, judgement.probability)
     said: dict[str, Any] = {
         "verdict": diagnosis.verdict or "not asked",
         "causes": causes,
+        "not_ruled_out": likely,
         "remains": {
             "significant": bool(remains and remains.significant),
             "where": where(remains.findings) if remains and remains.significant else None,
@@ -54,6 +63,25 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
         "notes": [f"{one.run.name}: {note}" for one in machine.recordings for note in one.notes],
     }
     return said
+
+
+def not_ruled_out(
+    sets: Sequence[tuple[str, ...]], probability: Sequence[float]
+) -> list[dict[str, Any]]:
+    """Effects that are likely all the same, where nothing is named; the likeliest first.
+
+    Parameters
+    ----------
+    sets, probability
+        Of each hypothesis that was weighed its effects, and how likely it is.
+    """
+    found: dict[str, float] = {}
+    for names, share in zip(sets, probability, strict=True):
+        for name in names:
+            found[name] = found.get(name, 0.0) + share
+    likely = sorted(found.items(), key=lambda one: -one[1])
+    return [{"effect": name, "probability": share} for name, share in likely
+            if share > NOT_RULED_OUT]  # fmt: skip
 
 
 def cables_of(cause: Cause) -> list[int]:

@@ -34,7 +34,8 @@ Statement = Mapping[str, Any]
 
 def paragraph(said: Statement) -> str:
     """What was found, in one paragraph."""
-    return " ".join([headline(said), *(_cause(one) for one in said["causes"]),
+    causes = (_cause(one) for one in said["causes"])
+    return " ".join([headline(said), *_not_ruled_out(said), *causes,
                      *_laws_of_one_thing(said), *_improvement(said), *_remains(said)])  # fmt: skip
 
 
@@ -78,6 +79,15 @@ def headline(said: Statement) -> str:
         if said["located"]
         else "Nowhere do recording and simulation differ beyond the noise."
     )
+
+
+def _not_ruled_out(said: Statement) -> list[str]:
+    """What may be there though nothing is named."""
+    likely = [
+        f"{short(one['effect'])} ({percent(one['probability'])})"
+        for one in said.get("not_ruled_out") or []
+    ]
+    return [f"Too faint to be named, and not ruled out: {listed(likely)}."] if likely else []
 
 
 def _ambiguous(causes: Sequence[Statement]) -> str:

@@ -124,6 +124,15 @@ def test_every_verdict_is_told_as_what_it_is(verdict: str, causes: Any, wanted: 
     assert markdown(said, sections(said), "hand").startswith("# Diagnosis of hand\n")
 
 
+def test_nothing_is_not_said_without_what_is_too_faint_to_be_named() -> None:
+    said = statement("none", [], not_ruled_out=[{"effect": "mass", "probability": 0.43}])
+    assert (
+        "Too faint to be named, and not ruled out: a wrong mass of the platform (43 %)."
+        in paragraph(said)
+    )
+    assert "ruled out" not in paragraph(statement("none", []))
+
+
 def test_a_ring_that_nothing_follows_is_not_called_a_motion_that_nothing_follows() -> None:
     said = statement("unexplained", [])
     for significant, wanted in (

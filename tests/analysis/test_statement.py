@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.diagnosis.statement import cables_of
+from analysis.diagnosis.statement import cables_of, not_ruled_out
 from analysis.engine.cause import Cause
 
 
@@ -25,3 +25,11 @@ def test_cables_are_those_that_stand_out_or_all_where_sizes_are_open(
     values: dict[str, float], sigma: float, cables: list[int]
 ) -> None:
     assert cables_of(cause(values, sigma)) == cables
+
+
+def test_where_nothing_is_named_what_is_likely_all_the_same_is_said() -> None:
+    sets = [(), ("mass",), ("mass", "air_drag"), ("cell_lag",)]
+    said = not_ruled_out(sets, [0.5, 0.3, 0.13, 0.07])
+    assert [one["effect"] for one in said] == ["mass", "air_drag"]
+    assert said[0]["probability"] == pytest.approx(0.43)
+    assert not_ruled_out([()], [1.0]) == []
