@@ -13,6 +13,7 @@ from analysis.engine.all_samples import (
     tells_more,
     through,
 )
+from analysis.engine.cycles import valley
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint_search import most_promised, nuisances_of, one_more
 from analysis.engine.fitted import Fitted
@@ -144,16 +145,20 @@ class FollowedSearch(Leader):
         return best if explains and best.state is not None else None
 
     def _lead_elsewhere(self) -> bool:
-        """Lead the best once more from elsewhere, where it leaves what nothing explains."""
+        """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""
         best = self._best
-        noise = noise_of(self._system)
-        if best.state is None or not best.to_end or best.left < noise or best.names in self._anew:
+        if best.state is None or not best.to_end or best.names in self._anew:
             return False
+        # Of several recordings each was led over its own ridges.
         if len(records_of(self._system)) >= SEVERAL:
             return False
         self._anew.add(best.names)
-        start = elsewhere_than(best)
-        self._keep(follow_ring(self._system, start, best.state, everything=True))
+        beyond = valley(self._system, best).led
+        if beyond is not best:
+            self._keep(beyond)
+        elif best.left > noise_of(self._system):
+            start = elsewhere_than(best)
+            self._keep(follow_ring(self._system, start, best.state, everything=True))
         return cost_of(self._best) < cost_of(best) - WORTH_IT
 
     def _is_kin(self, fitted: Fitted) -> bool:
