@@ -104,7 +104,7 @@ class RecordedMachine:
         self.simulated = 0
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
-        self.peaks_n = self._nominal_peaks()
+        self.peaks_n = self._peaks()
 
     @property
     def nuisances(self) -> Sequence[Nuisance]:
@@ -241,12 +241,19 @@ class RecordedMachine:
                 }
         return self._moving[record].by(point.nuisance, values)
 
-    def _nominal_peaks(self) -> list[float]:
-        """Highest simulated tension of each cable over all runs, N."""
+    def _peaks(self) -> list[float]:
+        """Highest tension of each cable over all runs, as simulated or as recorded, N.
+
+        A cell that clips does so below what the rig file has, or below what it was seen to show.
+        """
         nominal = Point(np.zeros(len(self._known)))
         jobs = [self.job(nominal, record) for record in range(len(self.recordings))]
         runs = [simulate_task(job.task, output_rate_hz=OUTPUT_HZ) for job in jobs]
         highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
+        for bundle in self.bundles:
+            if bundle.kind == "tension":
+                cables = [int(name.removeprefix("tension ")) - 1 for name in bundle.names]
+                highest[cables] = np.maximum(highest[cables], np.nanmax(bundle.value, axis=0))
         return [float(one) for one in highest]
 
 

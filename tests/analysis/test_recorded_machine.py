@@ -1,0 +1,60 @@
+"""CDPR-8's runs as a system: what a cell that clips is measured against, and its tones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from recorded_by import STILL, by_model
+
+from analysis.diagnosis.machine import RecordedMachine
+from analysis.diagnosis.recording import Recording
+from analysis.engine.system import Point, Ringing
+from cdpr8.rigfile import Excitation
+
+NAMES = ("cell_saturation", "stiffness")
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    excitation = Excitation(motion_s=3.0, **STILL)
+    return by_model(tmp_path_factory.mktemp("runs") / "plain", [], excitation)
+
+
+def higher(recorded: Recording, cable: int, by_n: float) -> Recording:
+    """The same run, of which one cable shows more than its rig file lets expect."""
+    bundles = tuple(
+        replace(one, value=one.value + by_n) if one.names == (f"tension {cable}",) else one
+        for one in recorded.bundles
+    )
+    return replace(recorded, bundles=bundles)
+
+
+def test_a_cell_clips_below_the_highest_tension_that_was_simulated_or_recorded(
+    recorded: Recording,
+) -> None:
+    plain = RecordedMachine([recorded], NAMES, workers=1)
+    more = RecordedMachine([higher(recorded, 7, 1.0)], NAMES, workers=1)
+    less = RecordedMachine([higher(recorded, 7, -1.0)], NAMES, workers=1)
+    shown = max(float(one.value.max()) for one in more.bundles if one.names == ("tension 7",))
+    assert more.peaks_n[6] == pytest.approx(shown)
+    assert more.peaks_n[6] > plain.peaks_n[6] + 0.9
+    assert less.peaks_n[6] == pytest.approx(plain.peaks_n[6], abs=0.05)
+    assert more.peaks_n[:6] == plain.peaks_n[:6]
+
+
+def test_the_machine_says_how_stiffness_moves_its_tones(recorded: Recording) -> None:
+    machine = RecordedMachine([recorded], NAMES, workers=1)
+    assert isinstance(machine, Ringing)
+    nuisance = np.zeros(len(machine.nuisances))
+    nominal = machine.tones_hz(Point(nuisance))
+    assert nominal == pytest.approx(machine.bundles[0].tones_hz)
+    sigmas = []
+    for i, meaning in enumerate(machine.meanings):
+        if meaning.effect == "stiffness":
+            nuisance[i] = 1.0
+            sigmas.append(machine.nuisances[i].sigma)
+    # All cables stiffer by one sigma: tones rise by half of that, but for what pretension holds,
+    # which is most of the softest.
+    share = machine.tones_hz(Point(nuisance)) / nominal - 1.0
+    assert np.all((0.0 < share) & (share < 0.5 * np.mean(sigmas)))
+    assert share[1:] == pytest.approx(0.5 * np.mean(sigmas), rel=0.2)
