@@ -56,5 +56,5 @@ def test_the_machine_says_how_stiffness_moves_its_tones(recorded: Recording) -> 
     # All cables stiffer by one sigma: tones rise by half of that, but for what pretension holds,
     # which is most of the softest.
     share = machine.tones_hz(Point(nuisance)) / nominal - 1.0
-    assert np.all((0.0 < share) & (share < 0.5 * np.mean(sigmas)))
+    assert np.all((share > 0.0) & (share < 0.5 * np.mean(sigmas)))
     assert share[1:] == pytest.approx(0.5 * np.mean(sigmas), rel=0.2)
