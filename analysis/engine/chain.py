@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.all_samples import noise_of
 from analysis.engine.cycles import Valley, information_of, valley
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known, Told
@@ -18,7 +19,7 @@ from analysis.engine.ring_fit import FAR, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
-from analysis.engine.way import LEAVES, STRAIN
+from analysis.engine.way import LEAVES
 
 ANOTHER = 500.0
 """Where parameters alone have to go so far from what was known, squared and in standard deviations,
@@ -88,23 +89,23 @@ def chained(
         found, information = _led(part, told.at, known)
         if found.share < EARLY:
             return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
+        more = told.copy()
+        more.add(part, found, information)
+        arrived = _arrived(found, known) and more.at.strain < most_strain
         if left:
             left.remove(nearest)
-            if not _arrived(found, known) or _forced(part, found, known):
+            if not arrived or _leaves(part, found):
                 # Where more is known it may still go without force.
                 later.append(nearest)
                 continue
-        elif not _arrived(found, known):
+        elif not arrived:
             if together == len(led):
                 return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
             told, together = _together(system, led, told.at), len(led)
             continue
         else:
             later.remove(nearest)
-        before = told.at
-        told.add(part, found, information)
-        if told.at.strain > most_strain:
-            return Chained(before.nuisance, before.state, tuple(led), nearest)
+        told = more
         led.append(nearest)
     return Chained(told.at.nuisance, told.at.state, tuple(led))
 
@@ -118,11 +119,10 @@ def _together(system: System, records: Sequence[str], at: Followed) -> Told:
     return told
 
 
-def _forced(part: Part, found: Followed, known: Known) -> bool:
-    """Whether numbers had to go far from what was known, and more than noise is left."""
+def _leaves(part: Part, found: Followed) -> bool:
+    """Whether more than noise is left, and the simulator's own error."""
     count = len(Samples(part, everything=True).shares)
-    noise = 1.0 + LEAVES * float(np.sqrt(2.0 / count))
-    return found.misfit > noise * count and known.cost(found.numbers) > STRAIN
+    return found.misfit > (noise_of(part) + LEAVES * float(np.sqrt(2.0 / count))) * count
 
 
 def _led(part: Part, at: Followed, known: Known) -> Valley:

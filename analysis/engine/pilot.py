@@ -120,7 +120,7 @@ def _nothing(system: System, at: Array, tell: Tell | None) -> list[Chained]:
         begun.append(record)
         part = Part(system, (record,))
         first = follow_ring(part, look(part, tell).calibrated.at, everything=True)
-        led = valley(part, first, lower=True)
+        led = valley(part, first)
         if led.led.share < 1.0:
             found.append(Chained(at, None, (), record))
             continue
