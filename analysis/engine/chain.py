@@ -6,6 +6,7 @@ what one leaves open the next ones close; a number that would have to be two at 
 """
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,9 +90,10 @@ def chained(
         found, information = _led(part, told.at, known)
         if found.share < EARLY:
             return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
-        more = told.copy()
-        more.add(part, found, information)
-        arrived = _arrived(found, known) and more.at.strain < most_strain
+        more = copy(told)
+        if arrived := _arrived(found, known):
+            more.add(part, found, information)
+            arrived = more.at.strain < most_strain
         if left:
             left.remove(nearest)
             if not arrived or _leaves(part, found):

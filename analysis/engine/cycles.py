@@ -79,7 +79,7 @@ def valley(
     known
         What is known of free numbers; None: priors of nuisances.
     lower
-        Only what is lower at once is tried: what is told of open tones is of no use anyway.
+        Only what is lower at once is tried: other recordings tell the tones that are open here.
     """
     known = Known.priors(led) if known is None else known
     if not led.to_end:

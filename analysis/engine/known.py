@@ -1,6 +1,5 @@
 """What is known of free numbers before samples are looked at, and what recordings add to it."""
 
-from copy import copy
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -52,10 +51,6 @@ class Told:
             own = np.arange(len(start.nuisance), len(known))
             known[own, own] = (LOOSE / steps) ** 2
         self._covariance = np.linalg.inv(known)
-
-    def copy(self) -> "Told":
-        """The same, to add to."""
-        return copy(self)
 
     def of(self, part: Part) -> Known:
         """What is known of a part's numbers, whatever the others are."""
