@@ -47,6 +47,9 @@ class Remains(Open):
 
     significant: bool
     where: str | None
+    not_followed: list[str] = Field(
+        default=[], description="runs that the causes do not explain; they were not counted"
+    )
 
 
 class Parts(Open):

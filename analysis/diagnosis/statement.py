@@ -54,6 +54,7 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
             "significant": bool(remains and remains.significant),
             "where": where(remains.findings) if remains and remains.significant else None,
             "misfit": None if remains is None else remains.misfit,
+            "not_followed": [] if diagnosis.search is None else list(diagnosis.search.aside),
         },
         "fit": _fit(machine, diagnosis.confirmation),
         "located": [_finding(one) for one in diagnosis.findings],

@@ -218,10 +218,16 @@ def _far_from_noise(said: Statement) -> bool:
 
 def _remains(said: Statement) -> list[str]:
     remains = said["remains"]
+    told = []
+    if aside := remains.get("not_followed"):
+        told = [
+            f"With this, {listed(aside)} could not be followed to the end and did not count: there "
+            "the law is not what the machine does."
+        ]
     if not remains["significant"]:
-        return []
+        return told
     place = f", strongest in {remains['where']}" if remains.get("where") else ""
-    return [f"Something beyond noise and the laws' own uncertainty remains{place}."]
+    return [*told, f"Something beyond noise and the laws' own uncertainty remains{place}."]
 
 
 def on_which_side(said: Statement) -> str:

@@ -40,12 +40,16 @@ have come to a hollow beside their valley: they are led once more from elsewhere
 
 
 class Found(NamedTuple):
-    """Single causes to first order, hypotheses, whether by the ring, and what was led so far."""
+    """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
+
+    Of several recordings, those that stand aside: hypotheses do not count what is there.
+    """
 
     screened: Sequence[Scored]
     fitted: Sequence[Fitted]
     faint: bool
     led: "Led | None" = None
+    aside: tuple[str, ...] = ()
 
 
 class Led(NamedTuple):
@@ -91,7 +95,7 @@ def by_ring(
     start
         From where; None: from the likeliest parameters, by growing windows.
     enough
-        Asked of the first hypothesis that explains to the noise: nothing more is led where it is.
+        As for `FollowedSearch`: where something was, there are no hypotheses.
     """
 
     def following(done: int, total: int) -> None:
@@ -125,16 +129,16 @@ def by_ring(
         promised = one_more(about, refiner)
         screened, faintly = promised, []
         single = [fitted_there(about, refiner, one) for one in promised]
-    led = FollowedSearch(refiner, nothing, most_causes, following, near=near)
+    led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else single[:1]
     if enough is not None:
-        explains = led.lead_first(first)
-        if explains is not None and enough(explains):
-            return Found(screened, (), faint=True)
-    if not near:
+        led.lead_first(first)
+    if not near and not led.ended:
         first += _bent(refiner, nothing, at)
     led.follow(first, single, guessed=about.followed.telling < 1.0)
+    if led.ended:
+        return Found(screened, (), faint=True)
     if near or led.arrived:
         rung = led.fitted()
         return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)

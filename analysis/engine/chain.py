@@ -15,6 +15,7 @@ from analysis.engine.all_samples import noise_of
 from analysis.engine.cycles import Valley, information_of, valley
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known, Told
+from analysis.engine.leader import ARRIVED
 from analysis.engine.part import Part, records_of
 from analysis.engine.ring_fit import FAR, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -25,6 +26,10 @@ from analysis.engine.way import LEAVES
 ANOTHER = 500.0
 """Where parameters alone have to go so far from what was known, squared and in standard deviations,
 something is left out, even if it then leaves nothing."""
+
+ASIDE = 0.3
+"""A law may not hold in so many of the recordings, as a share of all, and still be what is there:
+its error of form shows most where a motion dies away."""
 
 EARLY = 0.5
 """What is lost before this share of the time, what others tell would not help."""
@@ -44,12 +49,15 @@ class Chained:
         Recordings that were led, in their order.
     stuck
         The recording that could not be led with what those before it told; "": none.
+    aside
+        Recordings that what is on could not be led through, where it came through the others.
     """
 
     nuisance: Array
     state: State | None
     led: tuple[str, ...]
     stuck: str = ""
+    aside: tuple[str, ...] = ()
 
 
 def chained(
@@ -82,16 +90,28 @@ def chained(
     led = list(records)
     left = [one for one in records_of(system) if one not in led]
     later: list[str] = []
+    aside: list[str] = []
+    asked: dict[str, tuple[Told, Valley]] = {}
+    most_aside = 0 if at.state is None else int(ASIDE * len(records_of(system)))
     together = len(led)
     while left or later:
         nearest = min(left or later, key=lambda name: left_in(system, name, told.at))
         part = Part(system, (nearest,))
         known = told.of(part)
-        found, information = _led(part, told.at, known)
-        if found.share < EARLY:
+        # Where nothing was told since, there is nothing new to say.
+        if nearest not in asked or asked[nearest][0] is not told:
+            asked[nearest] = told, _led(part, told.at, known)
+        _, (found, information) = asked[nearest]
+        arrived, early = _arrived(found, known), found.share < EARLY
+        lost = early or (not arrived and not left)
+        if lost and len(aside) < most_aside:
+            aside.append(nearest)
+            (left or later).remove(nearest)
+            continue
+        if early:
             return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
         more = copy(told)
-        if arrived := _arrived(found, known):
+        if arrived:
             more.add(part, found, information)
             arrived = more.at.strain < most_strain
         if left:
@@ -109,7 +129,7 @@ def chained(
             later.remove(nearest)
         told = more
         led.append(nearest)
-    return Chained(told.at.nuisance, told.at.state, tuple(led))
+    return Chained(told.at.nuisance, told.at.state, tuple(led), aside=tuple(aside))
 
 
 def _together(system: System, records: Sequence[str], at: Followed) -> Told:
@@ -122,9 +142,10 @@ def _together(system: System, records: Sequence[str], at: Followed) -> Told:
 
 
 def _leaves(part: Part, found: Followed) -> bool:
-    """Whether more than noise is left, and the simulator's own error."""
+    """Whether more is left than noise, and the simulator's own error; a law is not exact either."""
     count = len(Samples(part, everything=True).shares)
-    return found.misfit > (noise_of(part) + LEAVES * float(np.sqrt(2.0 / count))) * count
+    noise = noise_of(part) + LEAVES * float(np.sqrt(2.0 / count))
+    return found.misfit > (noise if found.state is None else max(noise, ARRIVED)) * count
 
 
 def _led(part: Part, at: Followed, known: Known) -> Valley:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from analysis.engine.by_ring import rings
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.part import Part, records_of
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import Search
 from analysis.engine.state import State
@@ -43,6 +44,8 @@ class Confirmation:
 def confirm(search: Search, chosen: Fitted) -> Confirmation:
     """Fit the chosen hypothesis to the used part, and judge it on the other.
 
+    Recordings that stand aside are left out.
+
     Before is the system at its likeliest parameters, which have seen all of the data: that favours
     it.
 
@@ -53,24 +56,27 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     chosen
         The hypothesis.
     """
-    bundles = search.system.bundles
-    records = list(dict.fromkeys(bundle.record for bundle in bundles))
+    system, bundles = search.system, search.system.bundles
+    records = [one for one in records_of(system) if one not in search.aside]
+    part = Part(system, records) if search.aside else None
     sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
     held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
     start = search.calibrated.at
     if search.faint:
         start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
+    if part is not None:
+        system, start = part, part.own(start)
     if search.faint and chosen.hypothesis.parts:
-        before = after = _least(search.system, _tried(start, None), held)
+        before = after = _least(system, _tried(start, None), held)
     else:
         # Where nothing is on, this is what is judged: the held-out part must not have been seen.
-        before = after = _errors(search.system, start, None, held, near=search.faint)
+        before = after = _errors(system, start, None, held, near=search.faint)
     if chosen.hypothesis.parts:
         again = chosen
         if not search.faint:
             again = search.refiner.settle(search.refiner.again(chosen, _used(search, held)))
-        nuisance = again.point.nuisance
-        after = _errors(search.system, nuisance, again.state, held, near=search.faint)
+        nuisance = again.point.nuisance if part is None else part.own(again.point.nuisance)
+        after = _errors(system, nuisance, again.state, held, near=search.faint)
     return Confirmation(before, after, held)
 
 

@@ -13,6 +13,7 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
+from analysis.engine.part import records_of
 from analysis.engine.search import Search, search
 from analysis.engine.system import Array, System
 
@@ -119,7 +120,8 @@ def diagnose(
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)
-    judgement = judge(searched.fitted, candidates, lost=searched.lost, noise=noise)
+    aside = len(searched.aside) / len(records_of(system))
+    judgement = judge(searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside)
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)

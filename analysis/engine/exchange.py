@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analysis.engine.all_samples import cost_of
+from analysis.engine.all_samples import cost_of, noise_of
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of
 from analysis.engine.followed import Followed
@@ -118,9 +118,11 @@ def rivals(
     """
     for _, one in promised:
         state, law = State.of(one, candidates), found.followed
-        # Straight lines go far along what tells little, and may miss the valley.
-        starts = nuisances_of(found, one), law.nuisance
-        yield min((lead_from(system, law, state, start) for start in starts), key=cost_of)
+        led = lead_from(system, law, state, nuisances_of(found, one))
+        if not (led.to_end and led.left < noise_of(system)):
+            # Straight lines go far along what tells little, and may miss the valley.
+            led = min(led, lead_from(system, law, state, law.nuisance), key=cost_of)
+        yield led
 
 
 def plainest(

@@ -97,6 +97,15 @@ def most_promised(found: Faint, refiner: Refiner) -> float:
     return max((one.log_score for one in best), default=-np.inf) - nothing
 
 
+def promised_by(found: Faint, refiner: Refiner, scored: Scored) -> float:
+    """By how much the squared misfit is promised to fall with one cause more than is on."""
+    screen = _about(found, refiner)
+    nothing, known = screen.null(), refiner.candidates
+    before = nothing.log_score - screen.on.log_prior(known)
+    after = scored.log_score - scored.hypothesis.log_prior(known)
+    return 2.0 * float(found.problem.base.mean()) * (after - before)
+
+
 def _promises(found: Faint, refiner: Refiner, explains: float) -> tuple[float, list[Scored]]:
     """The score of what is on, and `one_more`."""
     asked = {name for name, _ in found.terms}

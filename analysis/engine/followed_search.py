@@ -1,6 +1,6 @@
 """Hypotheses led to the ring's phase, each for itself, and what all samples then say of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from analysis.engine.all_samples import (
@@ -15,9 +15,11 @@ from analysis.engine.all_samples import (
 )
 from analysis.engine.cycles import valley
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
-from analysis.engine.faint_search import most_promised, nuisances_of, one_more
+from analysis.engine.faint import Faint
+from analysis.engine.faint_search import most_promised, nuisances_of, one_more, promised_by
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.judge import NOISE
 from analysis.engine.kin import (
     kin_alike,
@@ -30,8 +32,10 @@ from analysis.engine.kin import (
 from analysis.engine.leader import Leader
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.places import is_placed, placed_again
+from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.screen import Scored
+from analysis.engine.sensitivity import Progress
 from analysis.engine.state import State
 
 MORE = 2
@@ -44,6 +48,9 @@ share of the time, the ring tells nothing of what is left out."""
 EXPLAINS = 0.05
 """Beside a law that was led to the end, one cause more is tried where it promises to explain this
 share of what that leaves beyond noise."""
+
+GENEROUS = 2.0
+"""And where so many times what it promises would count beside the error of form of what is on."""
 
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
@@ -61,8 +68,30 @@ FAR_BEHIND = 15.0
 class FollowedSearch(Leader):
     """Hypotheses led to the ring's phase, each for itself, and with one cause more where it asks.
 
-    Parameters are those of `Leader`.
+    Parameters are those of `Leader`, and
+
+    Parameters
+    ----------
+    enough
+        Asked of each hypothesis that explains to the noise and is the best: nothing more is led
+        where it is.
     """
+
+    def __init__(
+        self,
+        refiner: Refiner,
+        nothing: Followed,
+        most_causes: int,
+        progress: Progress | None = None,
+        *,
+        near: bool = False,
+        enough: Callable[[Followed], bool] | None = None,
+    ) -> None:
+        super().__init__(refiner, nothing, most_causes, progress, near=near)
+        self._enough = enough
+        self._asked_of: set[tuple[str, ...]] = set()
+        self.ended = False
+        """Whether something was enough."""
 
     def follow(
         self,
@@ -86,7 +115,7 @@ class FollowedSearch(Leader):
             They are likely by lines as well: what explains but a stretch is looked beside.
         """
         self.lead_first(hypotheses)
-        if not self._led:
+        if not self._led or self.ended:
             return
         farther = self._best.to_end or self._best.share >= self._nothing.share + EARLY
         tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
@@ -121,15 +150,32 @@ class FollowedSearch(Leader):
             self._one_less(self._best)
             waiting = not self._lead_rivals()
             best = self._best
-            if self._one_more():
+            more = self._one_more()
+            if self._is_enough():
+                break
+            if more:
                 continue
             if waiting:
                 self._lead_rivals(last=True)
             if self._best is best and not self._lead_elsewhere():
                 break
 
-    def lead_first(self, hypotheses: Sequence[Fitted]) -> Followed | None:
-        """Lead hypotheses, and look no farther; the best where it explains to the noise.
+    def _is_enough(self) -> bool:
+        """Whether the best explains to the noise, and that is all that was to be found here."""
+        best = self._best
+        if self._enough is None or not self._explains(best):
+            return False
+        if best.names not in self._asked_of:
+            self._asked_of.add(best.names)
+            self.ended = self._enough(best)
+        return self.ended
+
+    def _explains(self, led: Followed) -> bool:
+        """Whether what is on explains to the noise."""
+        return led.state is not None and led.to_end and led.left < noise_of(self._system)
+
+    def lead_first(self, hypotheses: Sequence[Fitted]) -> None:
+        """Lead hypotheses, and look no farther.
 
         Parameters
         ----------
@@ -140,9 +186,7 @@ class FollowedSearch(Leader):
             if number > 0 and (self._effort > self._most or self._is_kin(one)):
                 continue
             self._lead(one.point.nuisance, one.state, near=self._near)
-        best = self._best
-        explains = best.to_end and best.left < noise_of(self._system)
-        return best if explains and best.state is not None else None
+        self._is_enough()
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""
@@ -261,12 +305,16 @@ class FollowedSearch(Leader):
     def _one_more(self) -> bool:
         """Try one cause more beside the best; whether that leads farther."""
         best, refiner = self._best, self._refiner
-        if len(best.names) >= self._most_causes or self._effort > self._most:
+        # However much was tried: beside what explains to the noise little is to be led.
+        spent = self._effort > self._most and not self._explains(best)
+        if len(best.names) >= self._most_causes or spent:
             return False
         found = self._faint(best)
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
         for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
+            if best.to_end and not self._would_tell(found, scored):
+                continue
             (added,) = set(scored.hypothesis.names) - set(best.names)
             promised.setdefault(family[added], []).append(scored)
 
@@ -292,6 +340,20 @@ class FollowedSearch(Leader):
             if scored.hypothesis.names not in known and self._effort < self._most:
                 self._lead_like(tried[kind], scored, best.names)
         return True
+
+    def _would_tell(self, found: Faint, scored: Scored) -> bool:
+        """Whether one cause more, as promised, would count beside the error of form that is left.
+
+        What explains little of what a law of friction leaves is lost in how wrong that law may be,
+        and to lead it is in vain; what explains all of it shows that the law was right.
+        """
+        best, known = self._best, self._refiner.candidates
+        explains = promised_by(found, self._refiner, scored)
+        after = replace(best, misfit=best.misfit - explains)
+        forms = forms_of(self._refiner, after, self._nothing, len(self._samples.shares))
+        on = Hypothesis() if best.state is None else best.state.hypothesis
+        costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
+        return GENEROUS * 0.5 * explains / max(forms)[1] > costs
 
     def _one_less(self, whole: Followed) -> None:
         """Try without one cause, from where one more led to: each may only have shown the way."""

@@ -52,6 +52,9 @@ SUREST = 0.4
 MOST_DOUBT = 0.6
 """What was led to the ring's phase and is far from the noise is more often wrong than right."""
 
+DOUBT_ASIDE = 0.5
+"""Of the share of recordings that what is on could not be led through, this much is doubt."""
+
 DOUBT_A_CAUSE = 0.2
 """Where no simulation can be led to the ring's phase, lines alone speak: for each cause that they
 need, this is the doubt. One cause that explains all lines is mostly the right one; three are what a
@@ -90,6 +93,7 @@ def judge(
     *,
     lost: bool = False,
     noise: float = NOISE,
+    aside: float = 0.0,
 ) -> Judgement:
     """Weigh the fitted hypotheses.
 
@@ -103,6 +107,8 @@ def judge(
         The system rings, and no hypothesis could be led to the ring's phase.
     noise
         The squared misfit of a sample that noise leaves, where that is more than `NOISE`.
+    aside
+        Share of the recordings that did not count, for what is on could not be led through them.
     """
     noise = max(noise, NOISE)
     scores = np.array([_plausible_score(one) for one in fitted])
@@ -145,6 +151,7 @@ def judge(
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
     doubt = doubt_of(chosen, candidates, lost=lost, noise=noise)
+    doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
     causes = tuple(doubted(one, doubt) for one in sure)
     verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)

@@ -6,6 +6,7 @@ handed on to the next, and at the end all are led at once, over the little way t
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, FAR, follow_ring
+from analysis.engine.state import State
 from analysis.engine.system import Array, System
 
 CHAINS, PILOTS = 2, 3
@@ -78,22 +80,71 @@ def _led_by(refiner: Refiner, pilot: _Pilot, most_causes: int, tell: Tell | None
     start = None if pilot.nuisance is None else Start(part.own(pilot.nuisance))
     wholes: list[Found] = []
 
-    def leads(begun: Sequence[Followed]) -> bool:
+    def leads(lifted: _Lifted) -> bool:
+        begun = lifted.free or lifted.strained
         if begun:
-            wholes.append(by_ring(refiner, most_causes, tell, Start(begun[0].nuisance, begun)))
+            wholes.append(_whole(refiner, begun, lifted.aside, most_causes, tell))
         return bool(begun) and bool(wholes[-1].fitted)
 
     def first(one: Followed) -> bool:
-        return leads(_lifted(system, part, [one], beside, FAR).free)
+        return leads(_lifted(system, part, [one], beside, FAR)._replace(strained=[]))
 
     found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start, first)
     if not (wholes and wholes[-1].fitted):
         contending = [Followed(one.point.nuisance, one.state) for one in _contending(found.fitted)]
-        lifted = _lifted(system, part, contending, beside)
-        if not leads(lifted.free or lifted.strained):
+        if not leads(_lifted(system, part, contending, beside)):
             return Found((), (), faint=False)
     # What the pilot screened stays told, where all were led from what it found.
     return wholes[-1]._replace(screened=wholes[-1].screened or found.screened)
+
+
+class _Some(Refiner):
+    """Fits hypotheses to some of the recordings, and shows them in all.
+
+    Parameters
+    ----------
+    whole
+        Of all recordings.
+    part
+        Some of them.
+    beside
+        Nuisances of the others, of the whole system, in sigmas.
+    """
+
+    def __init__(self, whole: Refiner, part: Part, beside: Array) -> None:
+        super().__init__(part, whole.lens, whole.data, whole.calibrated)
+        self._whole, self._part, self._beside = whole, part, beside
+
+    def at(self, state: State, nuisance: Array) -> Fitted:
+        """As of the whole."""
+        return self._whole.at(state, nuisance)
+
+    def directions_of(self, nuisance: Array) -> Array:
+        """Of the part's nuisances, the whole system's directions."""
+        return self._whole.directions_of(self._part.whole(nuisance, self._beside))
+
+    def shown(self, fitted: Fitted) -> Fitted:
+        """A hypothesis with nuisances of the whole system."""
+        nuisance = self._part.whole(fitted.point.nuisance, self._beside)
+        return replace(fitted, point=replace(fitted.point, nuisance=nuisance))
+
+
+def _whole(
+    refiner: Refiner,
+    begun: Sequence[Followed],
+    aside: Sequence[str],
+    most_causes: int,
+    tell: Tell | None,
+) -> Found:
+    """What all recordings say of hypotheses, but for those that stand aside."""
+    if not aside:
+        return by_ring(refiner, most_causes, tell, Start(begun[0].nuisance, begun))
+    system = refiner.system
+    part = Part(system, [one for one in records_of(system) if one not in aside])
+    some = _Some(refiner, part, begun[0].nuisance)
+    own = [replace(one, nuisance=part.own(one.nuisance)) for one in begun]
+    found = by_ring(some, most_causes, tell, Start(own[0].nuisance, own))
+    return found._replace(fitted=[some.shown(one) for one in found.fitted], aside=tuple(aside))
 
 
 def _pilot(
@@ -140,10 +191,14 @@ def _contending(found: Sequence[Fitted]) -> list[Fitted]:
 
 
 class _Lifted(NamedTuple):
-    """Hypotheses that came through all recordings, and those for which parameters had to bend."""
+    """Hypotheses that came through all recordings, and those for which parameters had to bend.
+
+    All but some recordings, which the first of them could not be led through.
+    """
 
     free: list[Followed]
     strained: list[Followed]
+    aside: tuple[str, ...] = ()
 
 
 def _lifted(
@@ -158,6 +213,7 @@ def _lifted(
     Other laws of a kind, and a kind more or less, are led from there when all recordings are.
     """
     lifted = _Lifted([], [])
+    aside: tuple[str, ...] | None = None
     known: list[set[str]] = []
     family = {one.name: one.family or one.name for one in system.candidates}
     for one in found:
@@ -167,15 +223,17 @@ def _lifted(
         at = Followed(one.nuisance, one.state.whole())
         told = Valley(at, information_of(part, at))
         led = chained(system, told, records_of(part), beside, most_strain)
-        if led.stuck or led.state is None:
+        # All are weighed by the same recordings.
+        if led.stuck or led.state is None or (aside is not None and not {*led.aside} <= {*aside}):
             continue
+        aside = led.aside if aside is None else aside
         through = Followed(led.nuisance, led.state)
         if through.strain > FAR:
             lifted.strained.append(through)
         else:
             lifted.free.append(through)
             known.append(kinds)
-    return lifted
+    return lifted._replace(aside=aside or ())
 
 
 def _next(

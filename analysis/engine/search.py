@@ -45,6 +45,8 @@ class Search:
         Fits more.
     faint
         Whether parameters alone lead to the noise, so that scores are those of the followed ring.
+    aside
+        Recordings that count for nothing there: what is on could not be led through them.
     """
 
     system: System
@@ -56,6 +58,7 @@ class Search:
     fitted: tuple[Fitted, ...]
     refiner: Refiner
     faint: bool = False
+    aside: tuple[str, ...] = ()
 
     @property
     def lost(self) -> bool:
@@ -92,7 +95,7 @@ def search(
         found = _by_lines(refiner, null, most_causes, tell, found.led)
     return Search(
         system, lens, data, calibrated, tuple(found.screened), null, tuple(found.fitted), refiner,
-        faint=found.faint,
+        faint=found.faint, aside=found.aside,
     )  # fmt: skip
 
 

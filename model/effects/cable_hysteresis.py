@@ -81,6 +81,6 @@ EFFECT = Effect(
     ),
     pull=pull,
     rates=rates,
-    longest_step_s=1.6e-3,
-    cost="|x'| is rounded over 0.1 mm/s; twice the steps",
+    longest_step_s=3.1e-3,
+    cost="|x'| is rounded over 0.1 mm/s; six states a cable",
 )

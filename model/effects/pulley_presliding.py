@@ -84,6 +84,6 @@ EFFECT = Effect(
     behind=behind,
     rates=rates,
     steepest=steepest,
-    longest_step_s=1.6e-3,
-    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
+    longest_step_s=3.1e-3,
+    cost="a bristle that is short and loses much needs steps to suit",
 )
