@@ -204,6 +204,23 @@ def forms_of(
     return found
 
 
+def rise_beside_form(
+    refiner: Refiner, best: Followed, nothing: Followed, count: int, explains: float
+) -> float:
+    """By how much the score would rise, explained the best so much more of the squared misfit.
+
+    Parameters
+    ----------
+    refiner, best, nothing, count
+        As for `forms_of`.
+    explains
+        Of the squared misfit.
+    """
+    after = replace(best, misfit=best.misfit - explains)
+    _, noise = max(forms_of(refiner, after, nothing, count))
+    return 0.5 * explains / noise
+
+
 def cost_of(led: Followed) -> float:
     """Squared misfit of all samples and of the parameters to their prior."""
     return led.misfit + float(led.nuisance @ led.nuisance)

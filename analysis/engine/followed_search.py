@@ -10,6 +10,7 @@ from analysis.engine.all_samples import (
     farthest_first,
     forms_of,
     noise_of,
+    rise_beside_form,
     tells_more,
     through,
 )
@@ -349,11 +350,11 @@ class FollowedSearch(Leader):
         """
         best, known = self._best, self._refiner.candidates
         explains = promised_by(found, self._refiner, scored)
-        after = replace(best, misfit=best.misfit - explains)
-        forms = forms_of(self._refiner, after, self._nothing, len(self._samples.shares))
+        count = len(self._samples.shares)
+        rise = rise_beside_form(self._refiner, best, self._nothing, count, explains)
         on = Hypothesis() if best.state is None else best.state.hypothesis
         costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
-        return GENEROUS * 0.5 * explains / max(forms)[1] > costs
+        return GENEROUS * rise > costs
 
     def _one_less(self, whole: Followed) -> None:
         """Try without one cause, from where one more led to: each may only have shown the way."""

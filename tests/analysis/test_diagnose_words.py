@@ -151,6 +151,13 @@ def test_the_paragraph_has_the_numbers() -> None:
     assert "above the noise" not in said
 
 
+def test_runs_that_did_not_count_are_told() -> None:
+    said = statement()
+    said["remains"] = {**said["remains"], "not_followed": ["run03", "run07"]}
+    assert "run03 and run07 could not be followed to the end and did not count" in paragraph(said)
+    assert "did not count" not in paragraph(statement())
+
+
 def test_a_fit_far_from_the_noise_is_not_told_as_if_it_were_good() -> None:
     fit = statement()["fit"]
     fit["after"] = {"used": {"tension": 14.0}, "held_out": {"tension": 15.0}}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.engine import all_samples
-from analysis.engine.all_samples import all_samples_say, tells_more
+from analysis.engine.all_samples import all_samples_say, rise_beside_form, tells_more
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -77,6 +77,19 @@ def test_what_came_from_parameters_of_another_kind_of_law_is_led_anew(
     led, _ = all_samples.led_through(DAMPED, [law, best])
     assert begun == [(0.1, True) if kin else (0.0, False)]
     assert led.misfit < 1.1 * COUNT
+
+
+@pytest.mark.parametrize(("explains", "counts"), [(0.02, False), (0.2, True)])
+def test_what_explains_little_of_what_a_law_leaves_is_lost_in_how_wrong_the_law_may_be(
+    refiner: Refiner, explains: float, counts: bool
+) -> None:
+    law = Followed(np.zeros(1), state_of(DAMPING, 0.2), misfit=1.2 * COUNT)
+    nothing = Followed(np.zeros(1), None, misfit=1e4 * COUNT)
+    rise = rise_beside_form(refiner, law, nothing, COUNT, explains * COUNT)
+    assert (rise > 10.0) == counts
+    # Beside a law that leaves no more than noise, as little counts in full.
+    exact = replace(law, misfit=1.0 * COUNT)
+    assert rise_beside_form(refiner, exact, exact, COUNT, 40.0) == pytest.approx(20.0, rel=0.05)
 
 
 def test_nothing_is_led_again_with_what_parameters_do_where_it_starts(

@@ -51,6 +51,13 @@ def test_what_comes_to_the_noise_is_named(refiner: Refiner) -> None:
     assert said.causes[0].probability > CERTAIN
 
 
+def test_recordings_in_which_it_does_not_hold_leave_doubt(refiner: Refiner) -> None:
+    aside = [judge(of(refiner, 1.02), CANDIDATES, aside=one) for one in (0.0, 0.125, 0.25)]
+    sure = [one.causes[0].probability for one in aside]
+    assert sure[0] - sure[1] == pytest.approx(0.0625, abs=0.01)
+    assert sure[0] - sure[2] == pytest.approx(0.125, abs=0.01)
+
+
 def test_the_more_the_best_leaves_the_less_it_is_believed(refiner: Refiner) -> None:
     sure = [judge(of(refiner, left), CANDIDATES).causes[0].probability for left in (1.0, 1.2, 1.5)]
     assert sure[0] > sure[1] > sure[2]

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine import pilot
+from analysis.engine import lifting
 from analysis.engine.by_ring import by_ring
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
@@ -14,9 +14,10 @@ from analysis.engine.diagnosis import diagnose
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.hypothesis import Part as OfHypothesis
+from analysis.engine.lifting import lifted
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
-from analysis.engine.pilot import _lifted, _next, by_pilot
+from analysis.engine.pilot import _next, by_pilot
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import search
@@ -162,13 +163,13 @@ def test_what_has_a_kind_more_or_less_than_what_came_through_is_left_to_the_sear
         tried.append("+".join(first.led.names))
         return Chained(np.zeros(5), first.led.state, (), "" if comes_through else "high")
 
-    monkeypatch.setattr(pilot, "chained", spied)
+    monkeypatch.setattr(lifting, "chained", spied)
     sets = (("damping",), ("damping", "hardening"), ("other",))
     part = Part(system, ("low",))
     found = [Followed(np.zeros(2), state(names)) for names in sets]
-    lifted = _lifted(system, part, found, np.zeros(5)).free
+    came = lifted(system, part, found, np.zeros(5)).free
     assert tried == led
-    assert len(lifted) == (2 if comes_through else 0)
+    assert len(came) == (2 if comes_through else 0)
 
 
 @pytest.mark.parametrize(
@@ -186,6 +187,24 @@ def test_a_law_may_fail_in_one_recording_of_four_and_no_more(
     led = chained(system, Valley(at, information_of(part, at)), ("low",), np.zeros(5))
     assert led.stuck == stuck
     assert led.aside == aside
+
+
+def test_what_holds_in_more_recordings_is_weighed_by_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = LetGoOften()
+    known = {one.name: one for one in system.candidates}
+    fails = {"damping": ("high",), "hardening": ()}
+
+    def spied(whole: System, first: Valley, *_: object) -> Chained:
+        (name,) = first.led.names
+        return Chained(np.zeros(5), first.led.state, (), aside=fails[name])
+
+    monkeypatch.setattr(lifting, "chained", spied)
+    laws = {name: Hypothesis({name: OfHypothesis((name,))}) for name in fails}
+    states = [State.at(law, {(name, name): 0.1}, known) for name, law in laws.items()]
+    found = [Followed(np.zeros(2), state) for state in states]
+    came = lifted(system, Part(system, ("low",)), found, np.zeros(5))
+    assert came.aside == ()
+    assert [one.names for one in came.free] == [("hardening",)]
 
 
 def test_a_recording_in_which_the_law_does_not_hold_stands_aside_and_leaves_doubt() -> None:
