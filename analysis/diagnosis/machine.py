@@ -23,9 +23,6 @@ from model.simulator import run as simulate_task
 
 Array = NDArray[np.float64]
 
-OUTPUT_HZ = 333.0
-"""Rows a second: what cubics through them miss of a free ring is 0.08 of the noise, rms."""
-
 LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
 
@@ -192,7 +189,8 @@ class RecordedMachine:
             for place, point in work.points.items()
         }
         tasks = {job.key: job.task for jobs in all_jobs.values() for job in jobs}
-        solved = simulate_many(list(tasks.values()), output_rate_hz=OUTPUT_HZ, fewest=LANES_FROM)
+        rate_hz = self.recordings[work.record].output_hz
+        solved = simulate_many(list(tasks.values()), output_rate_hz=rate_hz, fewest=LANES_FROM)
         done = dict(zip(tasks, solved, strict=True))
         seen: dict[tuple[object, ...], Prediction] = {}
         found: dict[int, Prediction] = {}
@@ -248,7 +246,11 @@ class RecordedMachine:
         """
         nominal = Point(np.zeros(len(self._known)))
         jobs = [self.job(nominal, record) for record in range(len(self.recordings))]
-        runs = [simulate_task(job.task, output_rate_hz=OUTPUT_HZ) for job in jobs]
+        rates_hz = [one.output_hz for one in self.recordings]
+        runs = [
+            simulate_task(job.task, output_rate_hz=rate_hz)
+            for job, rate_hz in zip(jobs, rates_hz, strict=True)
+        ]
         highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
         for bundle in self.bundles:
             if bundle.kind == "tension":

@@ -82,13 +82,12 @@ def _seen(
     machine: "RecordedMachine", point: "Point", place: int
 ) -> tuple[list[Array], tuple[list[Array], list[Array]]]:
     """What would be recorded at a point, and elongation and rate of the cables, by bundle."""
-    from analysis.diagnosis.machine import OUTPUT_HZ
     from analysis.diagnosis.sight import seen_by
     from model.simulator import run
 
     recording = machine.recordings[place]
     job = machine.job(point, place)
-    simulation = run(job.task, output_rate_hz=OUTPUT_HZ)
+    simulation = run(job.task, output_rate_hz=recording.output_hz)
     elongation: list[Array] = []
     rate: list[Array] = []
     for cable, bundle in zip(recording.cables, recording.bundles, strict=False):
@@ -103,7 +102,6 @@ def _seen(
 
 def _peaks(machine: "RecordedMachine", place: int) -> tuple[float, float, float] | None:
     """See `Record.peaks_deg`."""
-    from analysis.diagnosis.machine import OUTPUT_HZ
     from analysis.diagnosis.sight import seen_by
     from analysis.engine.system import Point
     from model.simulator import run
@@ -115,7 +113,7 @@ def _peaks(machine: "RecordedMachine", place: int) -> tuple[float, float, float]
     bundle = recording.bundles[-1]
     column = bundle.names.index(name)
     job = machine.job(Point(np.zeros(len(machine.nuisances))), place)
-    simulation = run(job.task, output_rate_hz=OUTPUT_HZ)
+    simulation = run(job.task, output_rate_hz=recording.output_hz)
     inside = np.zeros(len(bundle.t_s), dtype=bool)
     fine = np.zeros(len(simulation.t_s), dtype=bool)
     for one in _stretches(recording.bundles):

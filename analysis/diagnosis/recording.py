@@ -63,6 +63,12 @@ how two rows of a simulation are joined."""
 _DEGREES = np.array([1.0, 1.0, 1.0, *[np.pi / 180.0] * 3])
 
 
+OUTPUT_HZ, ABRUPT_HZ = 333.0, 1332.0
+"""Rows a second: what cubics through them miss of a ring is 0.08 of the noise, rms. Where a motion
+begins or ends at once, tones of 60 and 80 Hz ring, of which 333 Hz miss 4 and 12 %, more than the
+noise. Four rows a step take half as long again."""
+
+
 @dataclass(frozen=True)
 class Recording:
     """One run, ready for the engine.
@@ -100,6 +106,11 @@ class Recording:
     def rig(self) -> Rig:
         """The machine as the run has it."""
         return self.run.rig
+
+    @property
+    def output_hz(self) -> float:
+        """Rows a second of a simulation of it."""
+        return ABRUPT_HZ if self.excitation.ramp_s == 0.0 else OUTPUT_HZ
 
 
 def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Recording:

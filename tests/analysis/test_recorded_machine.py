@@ -1,6 +1,7 @@
 """CDPR-8's runs as a system: what a cell that clips is measured against, and its tones."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,8 +9,10 @@ from recorded_by import STILL, by_model
 
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
+from analysis.diagnosis.sight import seen_by
 from analysis.engine.system import Point, Ringing
 from cdpr8.rigfile import Excitation
+from model.simulator import run
 
 NAMES = ("cell_saturation", "stiffness")
 
@@ -58,3 +61,22 @@ def test_the_machine_says_how_stiffness_moves_its_tones(recorded: Recording) -> 
     share = machine.tones_hz(Point(nuisance)) / nominal - 1.0
     assert np.all((share > 0.0) & (share < 0.5 * np.mean(sigmas)))
     assert share[1:] == pytest.approx(0.5 * np.mean(sigmas), rel=0.2)
+
+
+def test_however_high_a_machine_rings_that_is_let_go_its_rows_are_close_enough(
+    tmp_path: Path,
+) -> None:
+    # The motion ends at once, at the top of its swing.
+    let_go = {"frequency_hz": 1.5, "motion_s": 4.1667, "ramp_s": 0.0, "rest_s": 2.0}
+    recorded = by_model(tmp_path, [], Excitation(amplitude_deg=2.0, **let_go, **STILL))
+    machine = RecordedMachine([recorded], NAMES, workers=1)
+    nominal = Point(np.zeros(len(machine.nuisances)), ring="as_is")
+    job = machine.job(nominal, 0)
+    finer = run(job.task, output_rate_hz=10.0 * recorded.output_hz)
+    (seen,) = machine.simulate([nominal], lambda found: found)
+    for bundle, found, wanted in zip(
+        machine.bundles, seen, seen_by(recorded, finer, job.sight), strict=True
+    ):
+        noise = np.sqrt(np.diag(bundle.covariance))
+        missed = np.sqrt(np.mean((found - wanted) ** 2, axis=0)) / noise
+        assert missed.max() < 0.3, bundle.names
