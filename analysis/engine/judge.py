@@ -15,6 +15,10 @@ from analysis.engine.system import Array, Candidate
 TEMPER = 2.0
 """Scores count for less than they say, by this factor: laws are never quite the library's."""
 
+EXACT, TEMPER_EXACT = 0.02, 1.4
+"""Where what the best says is exact, as a number of a rig file or of a camera is, they count for less
+by this alone: where nothing was left out, no such number has come nearer than 6 to nothing."""
+
 KIN_TEMPER = 4.0
 """And among laws of one family by this factor more."""
 
@@ -120,7 +124,8 @@ def judge(
     nothing = nothing if np.isfinite(nothing) else scores.max()
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
-    temper = max(TEMPER, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
+    least = TEMPER_EXACT if form < EXACT else TEMPER
+    temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
     if best.left < noise:
         temper = min(temper, MOST_AT_NOISE)
     scores = _among_kin(scores, fitted, candidates, temper)

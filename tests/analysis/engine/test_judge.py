@@ -102,6 +102,19 @@ def test_a_law_without_an_error_of_form_must_explain_to_the_noise(refiner: Refin
     assert judge(of(refiner, 1.02), exact).doubt == 0.0
 
 
+@pytest.mark.parametrize(("ahead", "named"), [(-6.0, False), (1.0, False), (3.0, True)])
+def test_an_exact_number_that_is_a_little_ahead_of_nothing_is_named_sooner_than_a_law(
+    refiner: Refiner, ahead: float, named: bool
+) -> None:
+    exact = {name: replace(one, form_share=0.01) for name, one in CANDIDATES.items()}
+    found = [
+        fitted(refiner, state_of(DAMPING, 0.2), -100.0 + ahead, 1.0),
+        fitted(refiner, None, -100.0, 1.0),
+    ]
+    assert bool(judge(found, exact).causes) == named
+    assert judge(found, CANDIDATES).verdict == "none"
+
+
 def test_of_kin_the_one_that_comes_to_the_noise_is_named_however_much_there_is_to_explain(
     refiner: Refiner,
 ) -> None:
