@@ -16,8 +16,8 @@ TEMPER = 2.0
 """Scores count for less than they say, by this factor: laws are never quite the library's."""
 
 EXACT, TEMPER_EXACT = 0.02, 1.4
-"""Where what the best says is exact, as a number of a rig file or of a camera is, they count for less
-by this alone: where nothing was left out, no such number has come nearer than 6 to nothing."""
+"""Where what the best says is exact, as a number of a rig file or of a camera is, they count for
+less by this alone: where nothing was left out, none has come nearer than 6 to nothing."""
 
 KIN_TEMPER = 4.0
 """And among laws of one family by this factor more."""
