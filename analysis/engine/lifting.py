@@ -58,7 +58,7 @@ class Lifting:
         through = lifted(self._refiner.system, self._part, [led], self._beside, FAR)
         return self._weigh(through.free, through.aside)
 
-    def lift(self, found: Sequence[Fitted]) -> bool:
+    def lift(self, found: Sequence[Fitted]) -> None:
         """Lead all that contend in the pilot, even if parameters have to bend.
 
         Parameters
@@ -68,7 +68,7 @@ class Lifting:
         """
         contending = [Followed(one.point.nuisance, one.state) for one in _contending(found)]
         through = lifted(self._refiner.system, self._part, contending, self._beside)
-        return self._weigh(through.free or through.strained, through.aside)
+        self._weigh(through.free or through.strained, through.aside)
 
     def _weigh(self, begun: Sequence[Followed], aside: Sequence[str]) -> bool:
         if not begun:
