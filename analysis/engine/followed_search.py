@@ -1,40 +1,32 @@
 """Hypotheses led to the ring's phase, each for itself, and what all samples then say of them."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
     elsewhere_than,
     farthest_first,
-    forms_of,
     noise_of,
     rise_beside_form,
     tells_more,
-    through,
 )
 from analysis.engine.cycles import valley
-from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint import Faint
-from analysis.engine.faint_search import most_promised, nuisances_of, one_more, promised_by
+from analysis.engine.faint_search import nuisances_of, one_more, promised_by
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
-from analysis.engine.judge import NOISE
 from analysis.engine.kin import (
-    kin_alike,
-    kin_left,
     kin_of,
     lead_from,
     lead_instead,
     part_of_the_way,
 )
-from analysis.engine.leader import Leader
 from analysis.engine.part import SEVERAL, records_of
-from analysis.engine.places import is_placed, placed_again
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
+from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
 from analysis.engine.state import State
@@ -56,20 +48,14 @@ GENEROUS = 2.0
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
 
-EXCHANGES = 2
-"""From what rivals have led to, rivals are looked for once more: so often at a time."""
-
-PLACINGS = 2
-"""From other places, places are asked once more: so often at a time."""
-
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
 
 
-class FollowedSearch(Leader):
+class FollowedSearch(RivalLeader):
     """Hypotheses led to the ring's phase, each for itself, and with one cause more where it asks.
 
-    Parameters are those of `Leader`, and
+    Parameters are those of `RivalLeader`, and
 
     Parameters
     ----------
@@ -205,103 +191,6 @@ class FollowedSearch(Leader):
             start = elsewhere_than(best)
             self._keep(follow_ring(self._system, start, best.state, everything=True))
         return cost_of(self._best) < cost_of(best) - WORTH_IT
-
-    def _is_kin(self, fitted: Fitted) -> bool:
-        """Whether it will be led from where another law of its kind came to the end."""
-        names = (self._best.names, fitted.hypothesis.names)
-        if self._near or not self._best.to_end or any(len(one) != 1 for one in names):
-            return False
-        one, other = (self._refiner.candidates[name].family for (name,) in names)
-        return bool(one) and one == other
-
-    def _lead_kin(self, best: Followed) -> None:
-        """From where a hypothesis was led to the end, other laws of each of its kinds are led."""
-        if best.borrowed and best is self._best:
-            self._led = [through(self._system, one) if one is best else one for one in self._led]
-            best = self._best
-        if best.state is None or not best.to_end:
-            return
-        for known, name, names in kin_left(best, self._in_place, self._refiner.candidates):
-            if names in self._tried or self._effort > self._most:
-                continue
-            self._tried.add(names)
-            found = lead_instead(self._samples, best, known, name)
-            if found is not None:
-                self._keep(found)
-
-    def _lead_alike(self, others: Sequence[Fitted]) -> None:
-        """Laws of the best's kind in all places alike, where it leaves more than noise."""
-        best = self._best
-        if best.left < NOISE:
-            return
-        for one in kin_alike(best, others, self._refiner.candidates):
-            found = follow_ring(
-                self._system, one.point.nuisance, one.state.alike(), everything=True,
-                ahead=best.costs,
-            )  # fmt: skip
-            # What falls behind says nothing of its kind: that is led from the best's own places.
-            if farthest_first(found) < farthest_first(self._best):
-                self._keep(found)
-
-    @property
-    def _in_place(self) -> list[Followed]:
-        """What was led, but for what is to be led once more in other places."""
-        return [one for one in self._led if one.names not in self._misplaced]
-
-    def _lead_placed(self) -> None:
-        """What is on, in the places that are told at the end, or where the ring was lost."""
-        candidates = self._refiner.candidates
-        for _ in range(PLACINGS):
-            best = self._best
-            if best.state is None or self._effort > self._most:
-                return
-            if not any(is_placed(candidates[name]) for name in best.names):
-                return
-            if best.state.hypothesis.key in self._placed:
-                return
-            self._placed.add(best.state.hypothesis.key)
-            if not best.to_end:
-                asked = self._faint(best)
-                for _, one in placed_again(asked, candidates)[:1]:
-                    state = State.of(one, candidates)
-                    self._lead(nuisances_of(asked, one), state, near=False)
-                continue
-            asked = self._faint(replace(best, about=None))
-            forms = forms_of(self._refiner, best, self._nothing, len(self._samples.shares))
-            _, noise = max(forms)
-            for _, one in placed_again(asked, candidates, noise)[:1]:
-                state = State.of(one, candidates)
-                self._keep(lead_from(self._system, best, state, nuisances_of(asked, one)))
-            if cost_of(self._best) < cost_of(best) - WORTH_IT:
-                # What came as far may have been in places that are as wrong.
-                close = (one for one in self._led if cost_of(one) < cost_of(best) + CLOSE)
-                self._misplaced |= {one.names for one in close if one.names != best.names}
-                self._tried -= self._misplaced
-
-    def _lead_rivals(self, *, last: bool = False) -> bool:
-        """Kin of what is on are led, and what promises as much as it does.
-
-        Where what is on explains to the noise, and one cause more promises more than any rival,
-        rivals wait for it, unless this is the last time; whether none does.
-        """
-        candidates = self._refiner.candidates
-        for _ in range(EXCHANGES):
-            self._lead_placed()
-            self._lead_kin(self._best)
-            plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)
-            if plain is None or plain.names in self._exchanged or self._effort > self._most:
-                break
-            # At the end strained parameters tell what they make up for.
-            end = plain if plain.about is None else replace(plain, about=None)
-            asked = self._faint(end)
-            promised = fresh(exchanged(asked, candidates), self._in_place)
-            waits = plain is self._best and plain.left < NOISE and not last
-            if waits and promised and most_promised(asked, self._refiner) > promised[0].ahead:
-                return False
-            self._exchanged.add(plain.names)
-            for one in rivals(self._system, asked, candidates, promised):
-                self._keep(one)
-        return True
 
     def _one_more(self) -> bool:
         """Try one cause more beside the best; whether that leads farther."""
