@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine import followed_search
+from analysis.engine import rival_leader
 from analysis.engine.all_samples import cost_of
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint import Faint, faint
@@ -139,7 +139,7 @@ def test_rivals_of_what_explains_to_the_noise_wait_for_one_cause_more(
         order.append(found.followed.names)
         return iter(())
 
-    monkeypatch.setattr(followed_search, "rivals", asked)
+    monkeypatch.setattr(rival_leader, "rivals", asked)
     nothing = replace(follow_ring(system, np.zeros(1), everything=True), columns=None)
     search = FollowedSearch(refiner, nothing, 2)
     known = {one.name: one for one in system.candidates}
