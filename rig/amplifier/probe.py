@@ -5,7 +5,7 @@ Manuals and drivers disagree on which formats carry CR LF (section 5, "ambiguiti
 
 from cdpr8.errors import DeviceError
 from rig.amplifier import message
-from rig.amplifier.dialogue import SETTLE_S, TRIES, Dialogue
+from rig.amplifier.dialogue import LATE_S, SETTLE_S, TRIES, Dialogue
 from rig.amplifier.frame import BadFrameError, FrameFormat
 
 VALUES = 16
@@ -15,6 +15,9 @@ LONGEST_PROBE_S = 1.0
 """Triggered values come at the output rate: of a slow one fewer are asked for, 2 at least."""
 
 LONGEST_FRAME = 8
+
+MISSED = 4
+"""How many values may be late in one try: that tells of a busy computer, nothing of the format."""
 
 
 def probe_format(
@@ -36,8 +39,9 @@ def probe_format(
     Raises
     ------
     DeviceError
-        No format of this COF fits all of `VALUES` answers, or more than one does, in three tries:
-        a computer that stood still for a moment is not an amplifier at fault.
+        No format of this COF fits all of `VALUES` answers, or more than one does, in three tries.
+        An answer that is late is waited for, thrown away and asked for again: a computer that
+        stood still for a moment is not an amplifier at fault.
     """
     for _ in range(TRIES):
         fitting, raws, late = _probe(dialogue, address, cof, csm, wait_s)
@@ -64,9 +68,16 @@ def _probe(
     # The first answer is taken to its end in silence, which tells the length; the others quickly.
     raws = [_value(dialogue, address, LONGEST_FRAME, SETTLE_S, wait_s)]
     if not raws[0]:
-        return [], raws, dialogue.settle()
+        return [], raws, dialogue.hush(LATE_S)
     more = VALUES - 1 if not wait_s else max(1, min(VALUES - 1, int(LONGEST_PROBE_S / wait_s)))
-    raws += [_value(dialogue, address, len(raws[0]), 0.0, wait_s) for _ in range(more)]
+    missed = 0
+    while len(raws) <= more:
+        raw = _value(dialogue, address, len(raws[0]), 0.0, wait_s)
+        if len(raw) < len(raws[0]) and missed < MISSED:
+            missed += 1
+            dialogue.hush(LATE_S)
+            continue
+        raws.append(raw)
     late = dialogue.settle()
     fitting = [format_ for format_ in candidates if all(_fits(format_, raw) for raw in raws)]
     return fitting, raws, late

@@ -242,9 +242,19 @@ def test_values_that_fit_no_format_are_refused() -> None:
 
 def test_a_probe_whose_first_answer_stays_away_is_made_again() -> None:
     # Values of no length are not asked for: a serial port that gives none seems to be gone.
-    silence = [(b";", b""), (b"S01;", b""), (b";", b"")]
+    silence = [(b";", b""), (b"S01;", b"")]
     values = [(b";", b""), *[(b"S01;", b"\x00\x27\x10\x00\r\n")] * 16, (b";", b"")]
     script = Conversation(silence + values)
+    assert probe_format(Dialogue(script), 1, 24, 0).crlf
+    assert script.over
+
+
+def test_a_probe_asks_again_for_values_that_a_busy_computer_was_late_for() -> None:
+    value = (b"S01;", b"\x00\x27\x10\x00\r\n")
+    late = [(b"S01;", b""), (b"S01;", b"\x00\x27")]
+    script = Conversation(
+        [(b";", b""), value, *late, *[value] * 7, *late, *[value] * 8, (b";", b"")]
+    )
     assert probe_format(Dialogue(script), 1, 24, 0).crlf
     assert script.over
 
