@@ -226,15 +226,27 @@ def _open(path: str, line: LineSettings) -> "tuple[serial.Serial, ParityMarks | 
 
 
 def serial_ports() -> tuple[str, ...]:
-    """Ports this machine has, by their lasting names where there are any."""
+    """Ports this machine has, by their lasting names where there are any.
+
+    None where one vanishes while they are looked at.
+    """
     from serial.tools import list_ports
 
+    try:
+        ports = sorted(list_ports.comports())
+    except OSError:
+        return ()
     by_id = sorted(Path("/dev/serial/by-id").glob("*"))
-    lasting = {link.resolve(): str(link) for link in by_id}
-    return tuple(
-        lasting.get(Path(port.device).resolve(), port.device)
-        for port in sorted(list_ports.comports())
-    )
+    lasting = {_resolved(link): str(link) for link in by_id}
+    return tuple(lasting.get(_resolved(Path(port.device)), port.device) for port in ports)
+
+
+def _resolved(path: Path) -> Path:
+    """Where a name leads; the name where it vanishes while it is read: an adapter was unplugged."""
+    try:
+        return path.resolve()
+    except OSError:
+        return path
 
 
 def _lost_types() -> tuple[type[Exception], ...]:
@@ -250,7 +262,7 @@ _LOST = _lost_types()
 
 
 def _is_pseudo_terminal(path: str) -> bool:
-    return str(Path(path).resolve()).startswith("/dev/pts/")
+    return str(_resolved(Path(path))).startswith("/dev/pts/")
 
 
 def _ask_for_low_latency(port: "serial.Serial") -> None:

@@ -129,6 +129,20 @@ def test_a_missing_port_is_told_with_those_there_are() -> None:
     assert "ports here:" in told.value.sentence()
 
 
+def test_a_name_that_vanishes_while_it_is_read_is_a_port_that_is_not_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = tmp_path / "port"
+    link.symlink_to("/dev/ttyNOSUCH0")
+
+    def gone(*_: object) -> str:
+        raise FileNotFoundError(2, "No such file or directory")
+
+    monkeypatch.setattr(os, "readlink", gone)  # removed between being looked at and being read
+    with pytest.raises(DeviceError, match="no serial port"):
+        open_serial_port(str(link), LINE, RealClock())
+
+
 def marked(data: bytes, bad: set[int]) -> bytes:
     """As a POSIX terminal with PARMRK delivers bytes of which some came with a parity error."""
     out = b""
