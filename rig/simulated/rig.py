@@ -63,9 +63,9 @@ def open_rig(
     if platform is None:
 
         def simulate() -> Platform:
-            from rig.simulated.plant import simulate_platform
+            from rig.simulated.ahead import simulate_ahead
 
-            return simulate_platform(rig, excitation, friction_n)
+            return simulate_ahead(rig, excitation, friction_n)
 
         if isinstance(clock, VirtualClock):
             platform = simulate()

@@ -65,9 +65,9 @@ def test_zeros_reach_the_tensions_and_the_start_record(rig: Rig, here: Path) -> 
 def test_the_simulated_rig_hangs_in_its_cables_so_its_zeros_are_refused(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from rig.simulated import plant
+    from rig.simulated import ahead
 
-    monkeypatch.setattr(plant, "simulate_platform", lambda *_: WavePlatform())
+    monkeypatch.setattr(ahead, "simulate_ahead", lambda *_: WavePlatform())
     assert run_app(app, ["zero", "--for", "0.3"]) == 1
     assert "carries a load" in capsys.readouterr().err
     assert not Path("zeros.json").exists()
@@ -76,9 +76,9 @@ def test_the_simulated_rig_hangs_in_its_cables_so_its_zeros_are_refused(
 def test_pretension_tells_what_to_turn(
     rig: Rig, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from rig.simulated import plant
+    from rig.simulated import ahead
 
-    monkeypatch.setattr(plant, "simulate_platform", lambda *_: WavePlatform())
+    monkeypatch.setattr(ahead, "simulate_ahead", lambda *_: WavePlatform())
     assert run_app(app, ["pretension", "--for", "1"]) == 1
     told = capsys.readouterr()
     target = float(rig.cable[0].pretension_n.value)

@@ -1,12 +1,15 @@
 """The platform behind the simulated rig: the model's machine, and friction that the model lacks."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from cdpr8.errors import UsageError
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
 from model import simulate
-from rig.simulated.plant import PlatformTrajectory, simulate_platform
+from rig.simulated import ahead
+from rig.simulated.plant import PlatformSimulation, PlatformTrajectory, simulate_platform
 
 MOTION = Excitation(motion_s=3.0, rest_s=0.5)
 FRICTION_N = 0.3
@@ -73,3 +76,38 @@ def test_a_motion_out_of_the_workspace_is_refused(rig: Rig) -> None:
     wild = Excitation(platform_offset_m=(0.6, 0.0, 0.0), motion_s=3.0)
     with pytest.raises(UsageError, match="leaves its workspace"):
         simulate_platform(rig, wild, np.zeros(8))
+
+
+def test_a_long_run_is_simulated_as_it_goes_on(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, seconds in (("FIRST_S", 0.2), ("AHEAD_S", 0.3), ("KEPT_S", 0.4)):
+        monkeypatch.setattr(ahead, name, seconds)
+    whole = simulate_platform(rig, MOTION)
+    simulation = PlatformSimulation(rig, MOTION)
+    monkeypatch.setattr(simulation, "advance", partial(simulation.advance, 0.1))
+    platform = ahead.AheadPlatform(simulation)
+    assert not simulation.over
+    for t_s in np.arange(0.0, MOTION.duration_s + 0.5, 0.05):
+        times = np.array([max(0.0, t_s - 0.3), t_s])
+        assert np.abs(platform.pose_at(times) - whole.pose_at(times)).max() < 1e-12
+        tension = platform.tension_at(3, times)
+        assert np.abs(tension - whole.tension_at(3, times)).max() < 1e-9
+    assert simulation.over
+    with pytest.raises(ValueError, match="is forgotten"):
+        platform.tension_at(3, np.array([0.1]))
+
+
+def test_a_platform_that_is_thrown_out_late_stays_where_it_was(rig: Rig) -> None:
+    class Lost:
+        over, pieces = False, 0
+
+        def advance(self) -> PlatformTrajectory:
+            self.pieces += 1
+            if self.pieces > 1:
+                raise UsageError("leaves its workspace")
+            ones = np.ones(2)
+            return PlatformTrajectory(
+                np.array([0.0, ahead.FIRST_S]), np.outer(ones, np.ones(6)), np.ones((2, 8))
+            )
+
+    platform = ahead.AheadPlatform(Lost())
+    assert platform.tension_at(1, np.array([ahead.FIRST_S + 5.0])) == 1.0

@@ -25,9 +25,9 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """The simulated rig with a platform that takes no time to simulate."""
-    from rig.simulated import plant
+    from rig.simulated import ahead
 
-    monkeypatch.setattr(plant, "simulate_platform", lambda *_: WavePlatform(1.0))
+    monkeypatch.setattr(ahead, "simulate_ahead", lambda *_: WavePlatform(1.0))
 
 
 def with_port(port: str) -> str:
