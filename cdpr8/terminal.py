@@ -85,6 +85,16 @@ def complain(text: str) -> None:
     print(f"error: {text}", file=sys.stderr, flush=True)
 
 
+def alarm(text: str) -> None:
+    """One error that cannot wait, with the terminal's bell."""
+    complain(text)
+    # Past what is printed: a live view takes control characters out of that.
+    terminal = sys.__stderr__
+    if terminal is not None and terminal.isatty():
+        terminal.write("\a")
+        terminal.flush()
+
+
 def say_json(value: Any) -> None:
     """A result for machines: strict JSON (no NaN; what is not known is null)."""
     print(json.dumps(_strict(value), indent=1, allow_nan=False), flush=True)

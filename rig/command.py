@@ -1,11 +1,13 @@
 """The `rig` command: what comes before, during and after a run."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdpr8.terminal import complain, entry, note, say_json
+from cdpr8.terminal import alarm, entry, note, say_json
 from rig.command_amplifiers import set_address_command, set_baud_command
 from rig.command_before import doctor_command, pretension_command, zero_command
 from rig.command_runs import export_command, import_command, verify_command
@@ -128,21 +130,29 @@ def record_command(
         if duration is not None:
             raise UsageError("--until and --duration both end the run", allowed="one of them")
         duration = seconds_until(until, now.astimezone())
-    excitation = _excitation(machine, duration, amplitude, frequency)
+    asked = f"--duration {duration:g}" if duration is not None else ""
+    if until is not None:
+        asked = f"--until {until}, in {duration:.1f} s,"
+    excitation = _excitation(machine, duration, asked, amplitude, frequency)
     if (warning := slack_warning(machine, excitation)) is not None:
         note(f"warning: {warning}")
     taken = _zeros(zeros, rig_path)
     folder = out or RUNS / (name or now.astimezone().strftime("%Y-%m-%dT%H-%M-%S"))
     _announce(machine)
-    note(f"recording {excitation.duration_s:g} s into {folder}; Ctrl-C ends it in order")
-    if sys.stdin.isatty():
-        note("tap the platform before and after the motion, and press Enter with each tap")
+    note("setting up the amplifiers ...")
+
+    def ready() -> None:
+        note(f"recording {excitation.duration_s:g} s into {folder}; Ctrl-C ends it in order")
+        if sys.stdin.isatty():
+            note("tap the platform before and after the motion, and press Enter with each tap")
+
     log = _command_log(command_log, command_map)
     stop = StopRequest()
     with (
         stop.listening(),
         live_view(machine, excitation.duration_s, folder) as watch,
         listen_for_taps() as taps,
+        _saying_what_is_left(folder),
     ):
         recording = record(
             machine,
@@ -154,12 +164,13 @@ def record_command(
             rig_file=str(rig_path),
             stop=stop,
             watch=watch,
-            alarm=OverloadAlarm(complain, on_overload),
+            alarm=OverloadAlarm(alarm, on_overload),
             zeros=taken,
             taps=taps,
             beside_rig=files_beside(rig_text, rig_path.parent),
             command_log=log,
             warn=lambda words: note(f"warning: {words}"),
+            ready=ready,
         )
     if as_json:
         say_json(summary(recording))
@@ -178,6 +189,19 @@ app.command("set-baud")(set_baud_command)
 app.command("verify")(verify_command)
 app.command("export")(export_command)
 app.command("import")(import_command)
+
+
+@contextmanager
+def _saying_what_is_left(folder: Path) -> Iterator[None]:
+    """Say what there is where a Ctrl-C left it: nothing yet, or a run without a stop record."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if folder.exists():
+            note(f"left at once: {folder} has no stop record, and loads as it is")
+        else:
+            note(f"stopped before anything was recorded; there is no {folder}")
+        raise
 
 
 def _zeros(path: Path | None, rig_path: Path) -> "Zeros | None":
@@ -219,7 +243,11 @@ def _command_log(where: str | None, map_: str | None) -> "CommandLog | None":
 
 
 def _excitation(
-    rig: "Rig", duration: float | None, amplitude: float | None, frequency: float | None
+    rig: "Rig",
+    duration: float | None,
+    asked: str,
+    amplitude: float | None,
+    frequency: float | None,
 ) -> "Excitation":
     """The rig file's excitation with what the command line changes."""
     from cdpr8.errors import UsageError
@@ -236,11 +264,11 @@ def _excitation(
         least_s = 2.0 * motion.ramp_s
         if motion_s <= 0.0 or motion_s < least_s:
             raise UsageError(
-                f"--duration {duration:g} leaves {max(0.0, motion_s):g} s for the motion, between "
+                f"{asked} leaves {max(0.0, motion_s):g} s for the motion, between "
                 f"rests of {motion.start_s:g} s and {motion.rest_s:g} s",
                 allowed=f"{'at least' if least_s else 'more than'} {rests_s + least_s:g} s: "
                 f"rests, and two ramps of {motion.ramp_s:g} s",
-                remedy="a longer --duration, or shorter rest_s and ramp_s under [excitation]",
+                remedy="a longer recording, or shorter rest_s and ramp_s under [excitation]",
             )
         update["motion_s"] = motion_s
     return motion.model_copy(update=update)

@@ -32,7 +32,7 @@ def verify_command(
             say(f"{each.verdict.value:<5} {each.what:<10} {each.words}")
     bad = [each.what for each in findings if each.verdict is Verdict.FAIL]
     if bad:
-        raise CheckError(f"{len(bad)} checks fail: {', '.join(bad)}", where=str(folder))
+        raise CheckError(f"not in order: {', '.join(bad)}", where=str(folder))
 
 
 def export_command(

@@ -1,7 +1,6 @@
 """Whether this computer is fit to record: one verdict a line, with its remedy."""
 
 import os
-import platform
 import shutil
 import sys
 import time
@@ -58,7 +57,7 @@ def diagnose(rig: Rig, folder: Path) -> Iterator[Diagnosis]:
 
 def _versions() -> Diagnosis:
     known = ", ".join(f"{name} {number}" for name, number in versions().items())
-    return Diagnosis(Verdict.OK, "versions", f"Python {platform.python_version()}; {known}")
+    return Diagnosis(Verdict.OK, "versions", known)
 
 
 def _ports(rig: Rig) -> Iterator[Diagnosis]:
@@ -111,7 +110,16 @@ def _latency() -> Iterator[Diagnosis]:
 
 def _camera(rig: Rig) -> Diagnosis:
     if rig.camera is None or rig.camera.source == "simulated":
-        return Diagnosis(Verdict.OK, "camera", "none" if rig.camera is None else "simulated")
+        if rig.camera is None:
+            return Diagnosis(Verdict.OK, "camera", "none in the rig file: tensions only")
+        if rig.bus.port == "simulated":
+            return Diagnosis(Verdict.OK, "camera", "simulated")
+        return Diagnosis(
+            Verdict.WARN,
+            "camera",
+            "simulated in the rig file, beside a real port: tensions only, no video",
+            "set [camera] source to the camera's number",
+        )
     from cdpr8.clock import RealClock
     from rig.camera import CaptureCamera
 

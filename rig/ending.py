@@ -52,6 +52,10 @@ def reason(
 
 def require_empty(folder: Path) -> None:
     """Told before any device is opened; `RunWriter` holds to it."""
+    if folder.exists() and not folder.is_dir():
+        raise DataError(
+            "is a file, and a run is a folder", where=str(folder), remedy="choose another name"
+        )
     if folder.is_dir() and any(folder.iterdir()):
         raise DataError(
             "the run folder is not empty; nothing recorded is ever overwritten",

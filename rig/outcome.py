@@ -1,5 +1,6 @@
 """How a recording ended, told to people and to machines."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from cdpr8.terminal import say, say_table
@@ -31,7 +32,7 @@ def show(recording: Recording) -> None:
 
     start, stop = recording.start, recording.stop
     kind = "simulated " if start.simulated else ""
-    say(f"{kind}run {recording.folder}: {stop.t_s:.1f} s, ended by {_REASONS[stop.reason]}")
+    say(f"{kind}run {recording.folder}: {stop.t_s:.1f} s, ended by {REASONS[stop.reason]}")
     table = Table()
     for heading in ("cable", "samples", "rate 1/s"):
         table.add_column(heading, justify="right")
@@ -42,10 +43,16 @@ def show(recording: Recording) -> None:
     say(f"frames: {stop.frames}" + (f" at {camera.fps:g}/s" if camera else " (no camera)"))
     if recording.commands is not None:
         say(f"command log: {recording.commands} rows from {start.command_log}")
-    lost = (f"{_LOST.get(what, what)} {count}" for what, count in stop.lost.items())
-    say("lost:   " + (", ".join(lost) or "nothing"))
+    say("lost:   " + in_words(stop.lost))
     for line in _next_commands(recording):
         say(f"next:   {line}")
+
+
+def in_words(lost: Mapping[str, int]) -> str:
+    """What a run lost, as people read it; samples without a time are flagged too, and told once."""
+    lost = {**lost, "flagged": lost.get("flagged", 0) - lost.get("untimed", 0)}
+    words = (f"{_LOST.get(what, what)} {count}" for what, count in lost.items() if count > 0)
+    return ", ".join(words) or "nothing"
 
 
 def _next_commands(recording: Recording) -> list[str]:
@@ -55,7 +62,7 @@ def _next_commands(recording: Recording) -> list[str]:
     return [f"rig verify {run}", f"vision track {run}", f"analysis compare {run}"]
 
 
-_REASONS = {
+REASONS = {
     "duration": "the end of its duration",
     "interrupted": "the user",
     "stopped_at_once": "the user, at once",
@@ -70,7 +77,7 @@ _LOST = {
     "frame_dropped": "frames dropped",
     "frame_repeated": "frames repeated",
     "camera_lost": "camera gone",
-    "flagged": "samples flagged",
+    "flagged": "samples flagged otherwise",
     "unconfirmed": "jumps not confirmed",
     "untimed": "samples too late to be timed",
     "line_lost": "times the line was gone",

@@ -61,6 +61,7 @@ def record(
     beside_rig: Mapping[str, bytes] | None = None,
     command_log: CommandLog | None = None,
     warn: Callable[[str], None] | None = None,
+    ready: Callable[[], None] | None = None,
 ) -> Recording:
     """Record one run.
 
@@ -102,6 +103,8 @@ def record(
         The winch controller's log, opened; closed at the end. Needs a real clock.
     warn
         Told what a user must know before the run, though it goes on.
+    ready
+        Called when all is set up, just before the run folder is made.
 
     Returns
     -------
@@ -134,6 +137,8 @@ def record(
         machine.ready()
         if stop.requested:
             raise KeyboardInterrupt  # nothing has been recorded
+        if ready is not None:
+            ready()
         now_s = clock.monotonic_s()
         start = start_record(
             machine,

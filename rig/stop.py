@@ -8,7 +8,7 @@ from types import FrameType
 
 
 class StopRequest:
-    """Counts the wishes to stop a recording; Ctrl-C and SIGTERM make them while `listening`."""
+    """Counts the wishes to stop a recording; Ctrl-C and the like make them while `listening`."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -29,12 +29,17 @@ class StopRequest:
 
     @contextmanager
     def listening(self) -> Iterator[None]:
-        """Take Ctrl-C and SIGTERM as wishes; outside the main thread signals stay as they are."""
+        """Take Ctrl-C, SIGTERM and SIGHUP (the terminal was closed) as wishes.
+
+        A SIGHUP that is ignored, as under `nohup`, stays so; outside the main thread all do.
+        """
         if threading.current_thread() is not threading.main_thread():
             yield
             return
         before = {number: signal.getsignal(number) for number in _SIGNALS}
-        for number in _SIGNALS:
+        if before.get(_HANGUP) is signal.SIG_IGN:
+            del before[_HANGUP]
+        for number in before:
             signal.signal(number, self._on_signal)
         try:
             yield
@@ -48,4 +53,7 @@ class StopRequest:
             raise KeyboardInterrupt
 
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_HANGUP = getattr(signal, "SIGHUP", signal.SIGTERM)
+"""Windows has none."""
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, _HANGUP)

@@ -10,6 +10,7 @@ import numpy as np
 
 from cdpr8 import CABLES
 from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+from rig.outcome import REASONS, in_words
 from rig.station import by_cables
 
 if TYPE_CHECKING:
@@ -67,10 +68,10 @@ def verify(run: Run) -> list[Finding]:
 def _ending(run: Run) -> Iterator[Finding]:
     if run.stop is None:
         yield Finding(Verdict.WARN, "ending", "no stop record: interrupted; what came is there")
-    elif run.stop.reason in ("device", "disk_full"):
-        yield Finding(Verdict.FAIL, "ending", f"ended by a fault: {run.stop.reason}")
     else:
-        yield Finding(Verdict.OK, "ending", f"{run.stop.t_s:.1f} s, {run.stop.reason}")
+        fault = run.stop.reason in ("device", "disk_full")
+        words = f"{run.stop.t_s:.1f} s, ended by {REASONS[run.stop.reason]}"
+        yield Finding(Verdict.FAIL if fault else Verdict.OK, "ending", words)
     for words in run.notes:
         if "stop.json" not in words:
             yield Finding(Verdict.WARN, "files", words)
@@ -91,9 +92,9 @@ def _cables(run: Run) -> Iterator[Finding]:
             f"jitter {1e3 * float(np.std(steps[steps <= GAP_INTERVALS * usual])):.2f} ms"
         )
         if len(gaps):
-            words += f", {len(gaps)} gaps, the longest {gaps.max():.3f} s"
+            words += f", gaps: {len(gaps)}, the longest {gaps.max():.3f} s"
         if stuck:
-            words += f", {stuck} stuck values"
+            words += f", stuck values: {stuck}"
         missing = float(gaps.sum()) / float(times[-1] - times[0])
         verdict = Verdict.OK
         if len(gaps) or stuck:
@@ -155,7 +156,9 @@ def _losses(run: Run) -> Iterator[Finding]:
             lost[kind.value] = counts[kind.value]
     total = sum(count for what, count in lost.items() if what not in ("flagged", "untimed"))
     share = total / max(1, len(run.tension))
-    words = ", ".join(f"{what} {count}" for what, count in lost.items()) or "nothing"
+    words = in_words(lost)
+    if lost.get("untimed", 0) > MOST_LOST * len(run.tension):
+        words += "; the computer was busy, or an adapter holds answers up (`rig doctor`)"
     verdict = Verdict.OK if not lost else Verdict.FAIL if share > MOST_LOST else Verdict.WARN
     yield Finding(verdict, "lost", words)
 

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,9 @@ from rig.simulated.late import LatePlatform, Platform
 from rig.simulated.node import SimulatedNode
 from rig.simulated.signal import Array, Crystal, NodeSignal
 from rig.transport import MemoryTransport, Transport, TwoWire
+
+if TYPE_CHECKING:
+    from rig.simulated.camera import SimulatedCamera
 
 CRYSTAL_PPM = 50.0
 """Crystals of the nodes are off by up to this much, either way."""
@@ -73,7 +77,7 @@ def open_rig(
             rest_n = [float(cable.pretension_n.value) for cable in rig.cable]
             platform = late = LatePlatform(simulate, rest_n)
             ready = late.wait
-    exposer: Exposer | None = None
+    exposer: SimulatedCamera | None = None
     camera = rig.camera
     if camera is not None and rig.plate is not None and camera.source == "simulated":
         from rig.simulated.camera import SimulatedCamera
@@ -86,7 +90,13 @@ def open_rig(
             centre_of_mass_m=rig.platform.centre_of_mass_m.value,
         )
     machine = assemble(rig, platform, exposer, clock, seed=seed)
-    machine.ready = ready
+
+    def prepare() -> None:
+        if exposer is not None:
+            exposer.prepare()
+        ready()
+
+    machine.ready = prepare
     return machine
 
 

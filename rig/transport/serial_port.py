@@ -302,7 +302,7 @@ def _not_opened(path: str, line: LineSettings, error: Exception) -> DeviceError:
         what = f"port {path!r} may not be opened by this user"
     else:
         what = f"port {path!r} cannot be opened at {line}: {error}"
-    remedy = "set [bus] port in the rig file, or try --simulated"
+    remedy = 'correct [bus] port in the rig file; port = "simulated" needs no hardware'
     if code == 13:
         remedy = "join the group that owns the device (dialout on most systems), then log in again"
     return DeviceError(what, allowed="ports here: " + (", ".join(ports) or "none"), remedy=remedy)

@@ -1,13 +1,18 @@
 """What goes wrong around the line: unplugged, echoing, paused, the wall clock stepped."""
 
+import io
 import os
+import sys
 import threading
 import time
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
+from rich.live import Live
 from rig_stand_ins import (
     WavePlatform,
     at_origin,
@@ -22,6 +27,7 @@ from cdpr8.clock import RealClock
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import load_run
+from cdpr8.terminal import alarm
 from rig.alarm import OverloadAlarm
 from rig.assignment import line_settings
 from rig.broadcast import open_bus
@@ -233,16 +239,51 @@ def test_a_garbage_burst_is_over_within_half_a_second(rig: Rig, tmp_path: Path) 
     assert stations[0].scaling.tension_n(value.reading.digits) == pytest.approx(7.0, abs=0.04)
 
 
-def test_an_alarm_rings_speaks_and_runs_a_command(tmp_path: Path) -> None:
-    told: list[str] = []
-    alarm = OverloadAlarm(told.append, f"echo $CDPR8_CABLE > {tmp_path / 'out'}")
-    alarm(3, "61.00 N: above 120 % of the cell's 50 N")
-    deadline = time.monotonic() + 5.0
-    while not (tmp_path / "out").exists() or not (tmp_path / "out").read_text():
+def wait_for(condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 20.0
+    while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.01)
-    assert told == ["\aOVERLOAD cable 3: 61.00 N: above 120 % of the cell's 50 N"]
-    assert (tmp_path / "out").read_text() == "3\n"
+
+
+def test_an_alarm_speaks_and_runs_a_command(tmp_path: Path) -> None:
+    told: list[str] = []
+    out = tmp_path / "out"
+    raise_alarm = OverloadAlarm(told.append, f"echo $CDPR8_CABLE > {out}")
+    raise_alarm(3, "61.00 N: above 120 % of the cell's 50 N")
+    wait_for(lambda: bool(told) and out.exists() and bool(out.read_text()))
+    assert told == ["OVERLOAD cable 3: 61.00 N: above 120 % of the cell's 50 N"]
+    assert out.read_text() == "3\n"
+
+
+def test_a_terminal_that_stands_still_or_is_gone_keeps_no_command_from_running(
+    tmp_path: Path,
+) -> None:
+    let_go = threading.Event()
+
+    def stalled(_: str) -> None:
+        let_go.wait(30.0)
+        raise OSError(5, "Input/output error")
+
+    out = tmp_path / "out"
+    raise_alarm = OverloadAlarm(stalled, f"echo $CDPR8_CABLE >> {out}")
+    raise_alarm(3, "61.00 N")
+    raise_alarm(4, "62.00 N")
+    wait_for(lambda: out.exists() and sorted(out.read_text().split()) == ["3", "4"])
+    let_go.set()
+
+
+def test_the_bell_rings_beside_the_live_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "__stderr__", terminal)
+    with Live("table", console=Console(file=terminal, force_terminal=True), auto_refresh=False):
+        alarm("OVERLOAD cable 3")
+    assert "error: OVERLOAD cable 3" in terminal.getvalue()
+    assert terminal.getvalue().count("\a") == 1
 
 
 def test_an_overload_raises_the_alarm_once(rig: Rig, tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ def test_where_there_are_no_pseudo_terminals_the_bus_is_in_memory(
     assert min(recording.stop.samples.values()) > 0.6 * 40
 
 
-@pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_recording_in_order(tmp_path: Path, wish: signal.Signals) -> None:
     process = start(tmp_path / "run", 60.0)
     process.send_signal(wish)

@@ -177,3 +177,16 @@ def test_a_marker_that_the_dictionary_lacks_is_refused():
     )
     with pytest.raises(DataError, match="no marker 50"):
         PlateRenderer(RIG.camera, plate)
+
+
+def test_a_camera_that_was_prepared_takes_the_same_pictures() -> None:
+    def pictures(prepared: bool) -> list[np.ndarray]:
+        camera = SimulatedCamera(
+            RIG.camera, RIG.plate, lambda t_s: np.zeros((len(t_s), 6)), np.random.default_rng(1)
+        )
+        if prepared:
+            camera.prepare()
+        return [camera.expose(t_s) for t_s in (0.1, 0.2)]
+
+    for one, other in zip(pictures(True), pictures(False), strict=True):
+        assert np.array_equal(one, other)

@@ -12,8 +12,10 @@ from rig_stand_ins import WavePlatform
 from cdpr8.rigfile import Rig, packaged_rig_path
 from cdpr8.runfolder import load_run
 from cdpr8.terminal import run_app
+from rig import until
 from rig.command import app
 from rig.simulated import rig as simulated_rig
+from rig.stop import StopRequest
 
 
 @pytest.fixture(autouse=True)
@@ -86,7 +88,7 @@ def test_a_missing_port_is_one_message_and_a_device_error(
     assert run_app(app, ["record", "--rig", "lab.toml"]) == 4
     told = capsys.readouterr()
     assert "error: no serial port '/dev/ttyUSB7'" in told.err
-    assert "--simulated" in told.err
+    assert 'port = "simulated" needs no hardware' in told.err
     assert not told.out
     assert not (here / "runs").exists()
 
@@ -174,3 +176,21 @@ def test_the_simulated_rig_is_found_by_its_entry_point(rig: Rig) -> None:
     (entry,) = (each for each in metadata.entry_points(group="cdpr8.rigs"))
     assert entry.name == rig.bus.port == "simulated"
     assert entry.load() is simulated_rig.open_rig
+
+
+@pytest.mark.usefixtures("quick")
+def test_what_keeps_a_run_from_beginning_is_told_before_it_is_said_to_record(
+    here: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (here / "notes.txt").write_text("not a folder")
+    assert run_app(app, ["record", "--duration", "3", "--out", "notes.txt"]) == 3
+    told = capsys.readouterr().err
+    assert "notes.txt: is a file, and a run is a folder" in told
+    assert "recording 3 s" not in told
+    monkeypatch.setattr(until, "seconds_until", lambda *_: 0.5)
+    assert run_app(app, ["record", "--until", "12:00"]) == 2
+    assert "--until 12:00, in 0.5 s, leaves 0 s for the motion" in capsys.readouterr().err
+    monkeypatch.setattr(StopRequest, "requested", True)
+    assert run_app(app, ["record", "--duration", "3", "--name", "early"]) == 130
+    told = capsys.readouterr().err
+    assert f"stopped before anything was recorded; there is no {Path('runs/early')}" in told
