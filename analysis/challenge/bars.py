@@ -167,8 +167,9 @@ def _parameters(grades: Sequence[Grade]) -> list[list[float]]:
 
 
 def _held_out(grades: Sequence[Grade]) -> list[list[float]]:
-    chosen = [one.held_out for one in grades if one.verdict in ("explained", "parameter")]
-    return [[value] for value in chosen if value is not None]
+    """Wherever something was named: each has an improved machine."""
+    values = [one.held_out for one in grades if one.causes]
+    return [[value] for value in values if value is not None]
 
 
 def _both(grades: Sequence[Grade]) -> list[bool]:

@@ -23,8 +23,9 @@ POORLY = 2.0
 """A hypothesis whose misfit is more than this for each feature leaves something unexplained."""
 
 
-REMAINS = 0.2
-"""Where it was led to the ring's phase: what is so much more than noise for each sample."""
+REMAINS, REMAINS_ALONE = 0.2, 0.1
+"""Where it was led to the ring's phase: what is so much more than noise for each sample. Laws are
+never quite exact; where nothing is on, there is no law that could be."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,8 @@ def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
     scaled = _allowed(residual, weighed.variance, problem.base)
     found = locate(searched.system.bundles, problem, np.where(used, scaled, 0.0))
     if searched.faint and not np.isnan(chosen.left):
-        return Remains(chosen.left, chosen.left > noise + REMAINS, found)
+        most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)
+        return Remains(chosen.left, chosen.left > most, found)
     misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
     return Remains(misfit, misfit > POORLY, found)
 

@@ -48,6 +48,13 @@ GENEROUS = 2.0
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
 
+STRAINED = 500.0
+"""What came to the end with parameters bent by more than this, in squared sigmas, has most likely
+made them stand for what it is not: the next guesses are led, too."""
+
+GUESSES = 2
+"""So many of them, until one comes there with less."""
+
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
 
@@ -113,10 +120,32 @@ class FollowedSearch(RivalLeader):
             if self._best.to_end and not self._near:
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
-                self._lead(one.point.nuisance, one.state, near=self._near)
+                self._lead_guess(one)
         if guessed and not self._near:
+            self._lead_next(others)
             self._lead_alike(others)
         self._lead_beside()
+
+    def _lead_next(self, others: Sequence[Fitted]) -> None:
+        """The next guesses, of other kinds, where the first bent parameters far.
+
+        Parameters
+        ----------
+        others
+            Single causes, the most promising first.
+        """
+        kinds = {self._refiner.candidates[name].family or name for name in self._best.names}
+        for one in self._fresh(others):
+            kind = {self._refiner.candidates[name].family or name for name in one.hypothesis.names}
+            if len(kinds) > GUESSES or not self._is_strained(self._best):
+                return
+            if not kind & kinds:
+                kinds |= kind
+                self._lead(one.point.nuisance, one.state, near=False)
+
+    @staticmethod
+    def _is_strained(led: Followed) -> bool:
+        return led.to_end and led.strain > STRAINED
 
     def follow_from(self, begun: Sequence[Followed]) -> None:
         """Lead hypotheses of some of the recordings in all of them.
@@ -172,8 +201,15 @@ class FollowedSearch(RivalLeader):
         for number, one in enumerate(self._fresh(hypotheses)):
             if number > 0 and (self._effort > self._most or self._is_kin(one)):
                 continue
-            self._lead(one.point.nuisance, one.state, near=self._near)
+            self._lead_guess(one)
         self._is_enough()
+
+    def _lead_guess(self, guess: Fitted) -> None:
+        """Lead what straight lines promise; near the ring's phase, so much of it as leaves least."""
+        start = Followed(guess.point.nuisance, guess.state)
+        if self._near:
+            start = part_of_the_way(self._samples, self._nothing, start)
+        self._lead(start.nuisance, start.state or guess.state, near=self._near)
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""

@@ -52,9 +52,13 @@ def placed_again(
         screen = without(found, known, name)
         itself = screen.with_part(name, Part(part.terms, part.shared))
         other = screen.best_of(name)
-        if other is None or other.log_score < itself.log_score + ASKS:
+        if other is None:
             continue
         there = replace(other.hypothesis.parts[name], shapes=part.shapes)
+        # What needs fewer numbers is worth asking for itself.
+        asks = 0.0 if there.free < part.free else ASKS
+        if other.log_score < itself.log_score + asks:
+            continue
         scored = replace(other, hypothesis=other.hypothesis.plus(name, there))
         promised.append(Exchange(other.log_score - itself.log_score, scored))
     return sorted(promised, key=lambda one: -one.ahead)

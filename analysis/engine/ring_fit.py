@@ -43,7 +43,8 @@ GOES_ON = 6.0
 """With a cause on, a ring is followed on while no more than this is left: laws are not exact."""
 
 BEHIND = 600.0
-"""What stays this far behind another, in squared misfit, is not followed further."""
+"""What stays this far behind another, in squared misfit, is not followed on, unless it is ahead
+over all of the time."""
 
 
 def follow_ring(
@@ -101,7 +102,7 @@ def follow_ring(
             about = replace(came, telling=share)
         came = way.at
         costs |= {one: way.cost(one) for one in over}
-        behind = way.cost(share) > best + BEHIND
+        behind = way.cost(share) > best + BEHIND and not _overtakes(way, ahead)
         most_left = max(FAINT if state is None else GOES_ON, way.allowed(share))
         if way.left(share) > most_left or behind:
             break
@@ -119,6 +120,11 @@ def follow_ring(
         effort=samples.effort,
         costs=costs,
     )
+
+
+def _overtakes(way: Way, ahead: Mapping[float, float] | None) -> bool:
+    """Whether what is behind on the way is ahead at its end: the other took a wrong turn there."""
+    return way.cost(1.0) < (ahead or {}).get(1.0, -np.inf)
 
 
 def _far(at: Followed) -> bool:
