@@ -205,7 +205,7 @@ class FollowedSearch(RivalLeader):
         self._is_enough()
 
     def _lead_guess(self, guess: Fitted) -> None:
-        """Lead what straight lines promise; near the ring's phase, so much of it as leaves least."""
+        """Lead what straight lines promise, or, near the phase, so much of it as leaves least."""
         start = Followed(guess.point.nuisance, guess.state)
         if self._near:
             start = part_of_the_way(self._samples, self._nothing, start)

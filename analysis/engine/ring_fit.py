@@ -15,7 +15,7 @@ from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
-from analysis.engine.way import LOST, WINDOWS, Way
+from analysis.engine.way import AT_ONCE, LOST, WINDOWS, Way
 
 EFFORT, PATIENCE = 1000.0, 300.0
 """Whole simulations after which nothing is led on: some ten times all differences. At the beginning
@@ -43,8 +43,7 @@ GOES_ON = 6.0
 """With a cause on, a ring is followed on while no more than this is left: laws are not exact."""
 
 BEHIND = 600.0
-"""What stays this far behind another, in squared misfit, is not followed on, unless it is ahead
-over all of the time."""
+"""What stays this far behind another, in squared misfit, is not followed further."""
 
 
 def follow_ring(
@@ -87,7 +86,11 @@ def follow_ring(
     share = 0.0
     came: Followed | None = None
     about: Followed | None = None
-    while share < 1.0 and samples.effort < PATIENCE + (most - PATIENCE) * share:
+    while share < 1.0 and samples.effort < most:
+        impatient = samples.effort > PATIENCE + (most - PATIENCE) * share
+        # What is in phase over all of the time is nearly there.
+        if impatient and way.left(1.0) > AT_ONCE:
+            break
         passed, share = share, 1.0 if near else way.window(share)
         best = (ahead or {}).get(share, np.inf)
         over = [one for one in WINDOWS if passed < one <= share]
@@ -102,7 +105,7 @@ def follow_ring(
             about = replace(came, telling=share)
         came = way.at
         costs |= {one: way.cost(one) for one in over}
-        behind = way.cost(share) > best + BEHIND and not _overtakes(way, ahead)
+        behind = way.cost(share) > best + BEHIND
         most_left = max(FAINT if state is None else GOES_ON, way.allowed(share))
         if way.left(share) > most_left or behind:
             break
@@ -120,11 +123,6 @@ def follow_ring(
         effort=samples.effort,
         costs=costs,
     )
-
-
-def _overtakes(way: Way, ahead: Mapping[float, float] | None) -> bool:
-    """Whether what is behind on the way is ahead at its end: the other took a wrong turn there."""
-    return way.cost(1.0) < (ahead or {}).get(1.0, -np.inf)
 
 
 def _far(at: Followed) -> bool:

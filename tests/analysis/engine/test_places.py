@@ -9,7 +9,7 @@ import pytest
 
 from analysis.engine.all_samples import all_samples_say
 from analysis.engine.faint import faint
-from analysis.engine.faint_search import nuisances_of
+from analysis.engine.faint_search import ASKS, nuisances_of
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
@@ -103,6 +103,14 @@ def test_what_an_error_of_form_may_be_is_no_other_place() -> None:
 def test_where_all_is_in_place_nothing_is_promised() -> None:
     system = _Places()
     assert placed_again(faint(system, led(0.0, "ab"), [LAW]), KNOWN) == []
+
+
+def test_what_needs_fewer_numbers_is_asked_for_however_little_it_promises() -> None:
+    system = _Places()
+    ((ahead, one),) = placed_again(faint(system, led(0.0, "ab", shared=False), [LAW]), KNOWN)
+    part = one.hypothesis.parts["law"]
+    assert 0.0 < ahead < ASKS
+    assert (part.terms, part.shared) == (("size@a", "size@b"), True)
 
 
 def test_what_is_on_alone_has_the_columns_of_all_its_places() -> None:

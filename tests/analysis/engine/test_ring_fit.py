@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine import ring_fit
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import one_more
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -109,6 +110,17 @@ def test_a_faint_ring_two_turns_out_of_phase_is_followed_too(noise: float) -> No
     found = follow_ring(LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise), np.zeros(1))
     assert found.left == pytest.approx(1.0, abs=0.1)
     assert found.nuisance[0] == pytest.approx(2.0, abs=0.05)
+
+
+def test_out_of_patience_only_what_is_nearly_in_phase_is_led_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(ring_fit, "PATIENCE", -1e6)
+    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise=0.2)
+    nearly = follow_ring(system, np.array([1.99]))
+    assert nearly.to_end
+    assert nearly.nuisance[0] == pytest.approx(2.0, abs=0.005)
+    assert not follow_ring(system, np.zeros(1)).to_end
 
 
 def test_no_more_is_simulated_than_is_looked_at() -> None:
