@@ -85,7 +85,7 @@ class Run:
         return good.sort_values("t_s", kind="stable").reset_index(drop=True)
 
 
-def load_run(folder: Path) -> Run:
+def load_run(folder: str | Path) -> Run:
     """Read a run folder.
 
     Parameters
@@ -100,6 +100,7 @@ def load_run(folder: Path) -> Run:
     RigFileError
         The run's rig.toml is wrong.
     """
+    folder = Path(folder)
     notes: list[str] = []
     start = _read_start(folder)
     stop = _read_stop(folder, notes)

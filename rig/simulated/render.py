@@ -17,13 +17,11 @@ from numpy.typing import NDArray
 from cdpr8.errors import DataError
 from cdpr8.rigfile.schema import Camera, CameraPose, Plate
 from rig.simulated.lens import pixel_rays, to_pixels
-from rig.simulated.pattern import Box, band_cover, ink_cover, ink_of, paper_box
+from rig.simulated.pattern import print_of
+from rig.simulated.pattern_kernel import Levels, show
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
-
-REACH = 5.0
-"""A blurred edge is flat beyond this many standard deviations (3e-7 of its height)."""
 
 
 @dataclass(frozen=True)
@@ -103,9 +101,11 @@ class PlateRenderer:
         self.height_px = region.height_px if region else camera.intrinsics.height_px
         self._corner = (region.x_px, region.y_px) if region else (0, 0)
         self._intrinsics = camera.intrinsics
-        self._rays = pixel_rays(camera.intrinsics, self._corner, self.width_px, self.height_px)
-        self._ink = tuple(ink_of(marker, plate.dictionary) for marker in plate.markers())
-        self._paper = paper_box(plate)
+        rays = pixel_rays(camera.intrinsics, self._corner, self.width_px, self.height_px)
+        self._rays = np.stack(rays)
+        self._print = print_of(plate)
+        look = self.appearance
+        self._levels = Levels(look.white, look.black, look.background, look.blur_px, look.shading)
         x, y, normal = _plate_axes(plate)
         self._plate_axes = np.column_stack([x, y, normal])
         self._plate_origin = np.asarray(plate.pose.position_m) - np.asarray(centre_of_mass_m)
@@ -123,26 +123,10 @@ class PlateRenderer:
         Array
             Shape (height, width).
         """
-        look = self.appearance
-        image = np.full((self.height_px, self.width_px), look.background)
+        image = np.full((self.height_px, self.width_px), self.appearance.background)
         view = self._view(pose)
-        if not view.faces_camera:
-            return image
-        left, bottom, right, top = self._paper
-        seen = self._window(view, self._paper)
-        if seen is not None:
-            u, v, blur_u, blur_v, _ = self._plate_coordinates(view, seen)
-            paper = band_cover(u, left, right, blur_u) * band_cover(v, bottom, top, blur_v)
-            image[seen] += (look.white - look.background) * paper
-        for ink in self._ink:
-            seen = self._window(view, ink.box)
-            if seen is not None:
-                image[seen] -= (look.white - look.black) * ink_cover(
-                    ink, *self._plate_coordinates(view, seen)
-                )
-        if look.shading and (seen := self._window(view, self._paper)) is not None:
-            u = self._plate_coordinates(view, seen)[0]
-            image[seen] *= 1.0 + look.shading * (u - (left + right) / 2.0) / (right - left)
+        if view.faces_camera:
+            show(image, self._rays, view.to_plate, self._print, self._levels)
         return image
 
     def expose(self, poses: Array, weights: Array, generator: np.random.Generator) -> Image:
@@ -165,7 +149,8 @@ class PlateRenderer:
         light = np.zeros((self.height_px, self.width_px))
         for pose, weight in zip(poses, weights, strict=True):
             light += weight * self.brightness(pose)
-        levels = 255.0 * light ** (1.0 / self.appearance.gamma)
+        gamma = self.appearance.gamma
+        levels = 255.0 * (light if gamma == 1.0 else light ** (1.0 / gamma))
         levels += self.appearance.noise * generator.standard_normal(light.shape)
         return np.clip(np.rint(levels), 0.0, 255.0).astype(np.uint8)
 
@@ -189,7 +174,7 @@ class PlateRenderer:
 
     def corners(self, pose: Array) -> Array:
         """Where the plate's own four corners are in the picture, px, shape (4, 2)."""
-        left, bottom, right, top = self._paper
+        left, bottom, right, top = self._print.paper
         outline = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
         return self.project(pose, outline)
 
@@ -200,50 +185,6 @@ class PlateRenderer:
         to_image = np.column_stack([axes[:, 0], axes[:, 1], origin])
         faces = float(axes[:, 2] @ origin) < 0.0 and origin[2] > 0.0
         return _View(np.linalg.inv(to_image) if faces else to_image, to_image, faces)
-
-    def _window(self, view: _View, box: Box) -> tuple[slice, slice] | None:
-        """The part of the picture that a rectangle of the plate can touch; None if none."""
-        left, bottom, right, top = box
-        across = np.linspace(0.0, 1.0, 9)
-        u = left + (right - left) * across
-        v = bottom + (top - bottom) * across
-        rim = np.concatenate(
-            [np.column_stack([u, np.full(9, w)]) for w in (bottom, top)]
-            + [np.column_stack([np.full(9, w), v]) for w in (left, right)]
-        )
-        rays = np.column_stack([rim, np.ones(len(rim))]) @ view.to_image.T
-        if rays[:, 2].min() <= 0.0:
-            return slice(0, self.height_px), slice(0, self.width_px)
-        pixels = to_pixels(self._intrinsics, rays[:, :2] / rays[:, 2:]) - self._corner
-        reach = REACH * self.appearance.blur_px + 1.0
-        low = np.maximum(np.floor(pixels.min(axis=0) - reach), 0.0).astype(int)
-        high = np.ceil(pixels.max(axis=0) + reach).astype(int) + 1
-        high = np.minimum(high, (self.width_px, self.height_px))
-        if (low >= high).any():
-            return None
-        return slice(low[1], high[1]), slice(low[0], high[0])
-
-    def _plate_coordinates(
-        self, view: _View, seen: tuple[slice, slice]
-    ) -> tuple[Array, Array, Array, Array, Array]:
-        """u, v of each pixel of a window, the blur along u and along v, m, and its correlation."""
-        m = view.to_plate
-        x, y, x_by_column, x_by_row, y_by_column, y_by_row = (part[seen] for part in self._rays)
-        inverse = 1.0 / (m[2, 0] * x + m[2, 1] * y + m[2, 2])
-        coordinates, blurs, slopes = [], [], []
-        for row in (m[0], m[1]):
-            place = (row[0] * x + row[1] * y + row[2]) * inverse
-            by_x = (row[0] - place * m[2, 0]) * inverse
-            by_y = (row[1] - place * m[2, 1]) * inverse
-            by_column = by_x * x_by_column + by_y * y_by_column
-            by_row = by_x * x_by_row + by_y * y_by_row
-            coordinates.append(place)
-            steepness = np.sqrt(by_column**2 + by_row**2)
-            blurs.append(self.appearance.blur_px * steepness)
-            slopes.append((by_column / steepness, by_row / steepness))
-        (u_column, u_row), (v_column, v_row) = slopes
-        correlation = u_column * v_column + u_row * v_row
-        return coordinates[0], coordinates[1], blurs[0], blurs[1], correlation
 
 
 def _plate_axes(plate: Plate) -> tuple[Array, Array, Array]:

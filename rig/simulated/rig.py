@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +21,6 @@ from rig.simulated.late import LatePlatform, Platform
 from rig.simulated.node import SimulatedNode
 from rig.simulated.signal import Array, Crystal, NodeSignal
 from rig.transport import MemoryTransport, Transport, TwoWire
-
-if TYPE_CHECKING:
-    from rig.simulated.camera import SimulatedCamera
 
 CRYSTAL_PPM = 50.0
 """Crystals of the nodes are off by up to this much, either way."""
@@ -77,23 +73,24 @@ def open_rig(
             rest_n = [float(cable.pretension_n.value) for cable in rig.cable]
             platform = late = LatePlatform(simulate, rest_n)
             ready = late.wait
-    exposer: SimulatedCamera | None = None
+    exposer: Exposer | None = None
+    prepare_camera: Callable[[], object] = _at_once
     camera = rig.camera
     if camera is not None and rig.plate is not None and camera.source == "simulated":
         from rig.simulated.camera import SimulatedCamera
 
-        exposer = SimulatedCamera(
+        pictures = SimulatedCamera(
             camera,
             rig.plate,
             platform.pose_at,
             np.random.default_rng(np.random.SeedSequence([seed, _CAMERA_STREAM])),
             centre_of_mass_m=rig.platform.centre_of_mass_m.value,
         )
+        exposer, prepare_camera = pictures, pictures.prepare
     machine = assemble(rig, platform, exposer, clock, seed=seed)
 
     def prepare() -> None:
-        if exposer is not None:
-            exposer.prepare()
+        prepare_camera()
         ready()
 
     machine.ready = prepare
