@@ -20,15 +20,15 @@ def packaged_rig_path() -> Path:
     return Path(str(resources.files("cdpr8.rigfile").joinpath(PACKAGED_RIG)))
 
 
-def find_rig_file(named: Path | None = None) -> Path:
+def find_rig_file(named: str | Path | None = None) -> Path:
     """The rig file a command uses: the one named, else ./rig.toml, else the packaged CDPR-8."""
     if named is not None:
-        return named
+        return Path(named)
     here = Path("rig.toml")
     return here if here.is_file() else packaged_rig_path()
 
 
-def load_rig(path: Path | None = None) -> Rig:
+def load_rig(path: str | Path | None = None) -> Rig:
     """Read and check a rig file.
 
     Parameters

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cdpr8.errors import DataError
-from cdpr8.rigfile import Excitation, files_beside, packaged_rig_path
+from cdpr8.rigfile import Excitation, files_beside, load_rig, packaged_rig_path
 from cdpr8.runfolder import (
     CameraStart,
     ClockAnchor,
@@ -76,6 +76,13 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     assert run.notes == ()
     assert run.stop is not None
     assert run.cable_tension(3)["digits"].tolist() == [2, 10, 18, 26, 34]
+
+
+def test_runs_and_rigs_are_read_by_the_text_of_their_paths(tmp_path: Path) -> None:
+    write_run(tmp_path / "run")
+    run = load_run(str(tmp_path / "run"))
+    assert run.folder == tmp_path / "run"
+    assert load_rig(str(run.folder / "rig.toml")) == run.rig
 
 
 def test_video_is_lossless(tmp_path: Path) -> None:
