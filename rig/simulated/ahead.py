@@ -51,6 +51,7 @@ class AheadPlatform:
         self._simulation = simulation
         self._turn = threading.Lock()
         self._wanted = threading.Event()
+        self._asked_s = 0.0
         # Replaced whole, so that nobody waits who asks for what is there.
         self._known = simulation.advance()
         while not simulation.over and self._known.t_s[-1] < FIRST_S:
@@ -76,6 +77,8 @@ class AheadPlatform:
             They lie so far back that they are forgotten.
         """
         last_s = float(np.max(t_s, initial=0.0))
+        # No lock: of two that ask at once the earlier may stand, until the next asks.
+        self._asked_s = max(self._asked_s, last_s)
         while not self._over and self._known.t_s[-1] < last_s:
             self._extend(last_s)
         known = self._known
@@ -90,7 +93,7 @@ class AheadPlatform:
             if self._over or self._known.t_s[-1] >= until_s:
                 return
             try:
-                self._known = self._known.then(self._simulation.advance(), AHEAD_S + KEPT_S)
+                self._known = self._known.then(self._simulation.advance(), self._asked_s - KEPT_S)
             except UsageError:  # thrown out of its workspace, an hour into a run
                 self._over = True
             else:
@@ -102,7 +105,7 @@ class AheadPlatform:
         while not self._over:
             self._wanted.wait()
             self._wanted.clear()
-            until_s = self._known.t_s[-1] + AHEAD_S
+            until_s = self._asked_s + AHEAD_S
             while not self._over and self._known.t_s[-1] < until_s:
                 self._extend(until_s)
 

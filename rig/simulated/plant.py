@@ -66,9 +66,9 @@ class PlatformTrajectory:
         """Tension of cable 1 to 8 at any times, shape of `t_s`, in N."""
         return np.interp(t_s, self.t_s, self.tension_n[:, cable - 1])
 
-    def then(self, after: "PlatformTrajectory", keep_s: float = np.inf) -> "PlatformTrajectory":
-        """These and the times after them; of these only the last `keep_s`."""
-        kept = self.t_s >= self.t_s[-1] - keep_s
+    def then(self, after: "PlatformTrajectory", from_s: float = -np.inf) -> "PlatformTrajectory":
+        """These and the times after them; of these only what `from_s` and later asks for, s."""
+        kept = slice(max(0, int(np.searchsorted(self.t_s, from_s, side="right")) - 1), None)
         return PlatformTrajectory(
             np.concatenate([self.t_s[kept], after.t_s]),
             np.concatenate([self.pose[kept], after.pose]),

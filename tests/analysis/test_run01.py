@@ -69,9 +69,16 @@ def test_the_script_makes_it_again(run01: Run, tmp_path: Path) -> None:
         read_video(run01.folder / "video.mkv"),
         strict=True,
     )
+    otherwise, pixels = 0, 0
     for (image, t_s), (original, original_t_s) in pictures:
         assert t_s == original_t_s
-        assert np.array_equal(image, original)
+        difference = np.abs(image.astype(int) - original)
+        assert difference.max() <= 1
+        otherwise += np.count_nonzero(difference)
+        pixels += difference.size
+    # How a grey level between two is rounded hangs on the last digit of erf, which computers and
+    # libraries give differently: 535 of 12.9 million pixels when the renderer was last changed.
+    assert otherwise < 1e-4 * pixels
 
 
 def test_a_name_finds_it_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """The platform behind the simulated rig: the model's machine, and friction that the model lacks."""
 
+import time
 from functools import partial
 
 import numpy as np
@@ -94,6 +95,21 @@ def test_a_long_run_is_simulated_as_it_goes_on(rig: Rig, monkeypatch: pytest.Mon
     assert simulation.over
     with pytest.raises(ValueError, match="is forgotten"):
         platform.tension_at(3, np.array([0.1]))
+
+
+def test_what_lies_behind_is_kept_however_long_the_next_question_takes(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, seconds in (("FIRST_S", 0.2), ("AHEAD_S", 0.3), ("KEPT_S", 0.1)):
+        monkeypatch.setattr(ahead, name, seconds)
+    simulation = PlatformSimulation(rig, MOTION)
+    monkeypatch.setattr(simulation, "advance", partial(simulation.advance, 0.1))
+    platform = ahead.AheadPlatform(simulation)
+    for t_s in (0.15, 0.21, 0.25):  # each wakes the thread, which has time to go on
+        platform.pose_at(np.array([t_s]))
+        time.sleep(0.2)
+    platform.pose_at(np.array([0.15, 0.25]))
+    assert not simulation.over
 
 
 def test_a_platform_that_is_thrown_out_late_stays_where_it_was(rig: Rig) -> None:
