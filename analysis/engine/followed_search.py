@@ -53,7 +53,8 @@ STRAINED = 500.0
 made them stand for what it is not: the next guesses are led, too."""
 
 GUESSES = 2
-"""So many of them, until one comes there with less."""
+"""So many of them, of other kinds, until one comes there with less; and until one comes farther,
+where the first came no farther than parameters alone."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -111,10 +112,12 @@ class FollowedSearch(RivalLeader):
         self.lead_first(hypotheses)
         if not self._led or self.ended:
             return
-        farther = self._best.to_end or self._best.share >= self._nothing.share + EARLY
-        tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
-        if not (self._near or farther or tells):
-            return
+        if not self._near:
+            tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
+            if not tells:
+                self._lead_next(others, self._is_farther)
+            if not (tells or self._is_farther(self._best)):
+                return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
         for one in self._fresh(kin_of(self._best, self._led, others, self._refiner.candidates)):
             if self._best.to_end and not self._near:
@@ -122,26 +125,34 @@ class FollowedSearch(RivalLeader):
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead_guess(one)
         if guessed and not self._near:
-            self._lead_next(others)
+            self._lead_next(others, lambda led: not self._is_strained(led))
             self._lead_alike(others)
         self._lead_beside()
 
-    def _lead_next(self, others: Sequence[Fitted]) -> None:
-        """The next guesses, of other kinds, where the first bent parameters far.
+    def _lead_next(self, others: Sequence[Fitted], until: Callable[[Followed], bool]) -> None:
+        """The next guesses, of other kinds than what was led, until the best is of use.
 
         Parameters
         ----------
         others
             Single causes, the most promising first.
+        until
+            Whether the best is of use.
         """
-        kinds = {self._refiner.candidates[name].family or name for name in self._best.names}
+        kinds = set().union(*(self._kinds(one.names) for one in self._led))
         for one in self._fresh(others):
-            kind = {self._refiner.candidates[name].family or name for name in one.hypothesis.names}
-            if len(kinds) > GUESSES or not self._is_strained(self._best):
+            if len(kinds) > GUESSES or until(self._best):
                 return
+            kind = self._kinds(one.hypothesis.names)
             if not kind & kinds:
                 kinds |= kind
                 self._lead(one.point.nuisance, one.state, near=False)
+
+    def _kinds(self, names: Sequence[str]) -> set[str]:
+        return {self._refiner.candidates[name].family or name for name in names}
+
+    def _is_farther(self, led: Followed) -> bool:
+        return led.to_end or led.share >= self._nothing.share + EARLY
 
     @staticmethod
     def _is_strained(led: Followed) -> bool:

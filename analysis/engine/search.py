@@ -107,14 +107,14 @@ def _by_lines(
     singles = finder.singles(null)
     alone = [one for one in finder.ranked() if one.hypothesis.parts]
     if led is not None:
-        led.search.follow(_to_follow(null, led.single, alone), [*alone, *led.single], seen=True)
+        led.search.follow(_to_follow(refiner, null, led.single, alone), [*alone, *led.single], seen=True)
     if led is None or not led.search.arrived:
         finder.sets(most_causes)
     ranked = finder.ranked()
     if led is None:
         return Found(singles, ranked, faint=False)
     if not led.search.arrived:
-        led.search.follow(_to_follow(null, (), ranked), alone, seen=True)
+        led.search.follow(_to_follow(refiner, null, (), ranked), alone, seen=True)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
 
@@ -131,16 +131,21 @@ def _terms(refiner: Refiner, tell: Tell | None) -> Columns:
 
 
 def _to_follow(
+    refiner: Refiner,
     null: Fitted,
     promises: Sequence[Fitted],
     ranked: Sequence[Fitted],
 ) -> list[Fitted]:
     """Hypotheses worth leading to the ring's phase, one for each set of candidates.
 
-    What the ring promises, and what is likely without it.
+    What the ring promises, and what is likely without it: of laws of one thing the likeliest.
     """
     least = null.log_score - UNLIKELY
-    likely = [one for one in ranked if one.hypothesis.parts and one.log_score > least][:FOLLOWED]
+    kinds: dict[frozenset[str], Fitted] = {}
+    for one in ranked:
+        if one.hypothesis.parts and one.log_score > least:
+            kinds.setdefault(_kind(refiner, one), one)
+    likely = list(kinds.values())[:FOLLOWED]
     # Which places are on, lines tell better, where they tell anything.
     seen = {one.hypothesis.names: one for one in reversed(ranked) if one.log_score > least + SEEN}
     most = max((one.log_score for one in promises), default=0.0) - FAR_BEHIND
@@ -150,3 +155,9 @@ def _to_follow(
     for one in known:
         tried.setdefault(one.hypothesis.names, one)
     return list(tried.values())
+
+
+def _kind(refiner: Refiner, fitted: Fitted) -> frozenset[str]:
+    """Of what its causes are laws."""
+    names = fitted.hypothesis.names
+    return frozenset(refiner.candidates[name].family or name for name in names)
