@@ -11,6 +11,7 @@ from analysis.engine.cause import Cause
 from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.locate import Finding
+from analysis.engine.system import Candidate
 
 WHEN = {
     "pulley_coulomb": "velocity reversal",
@@ -117,28 +118,33 @@ def _cause(cause: Cause, sides: dict[str, str], machine: RecordedMachine) -> dic
             "when": WHEN.get(cause.name, "throughout the motion"),
             "harmonics": [],
         },
-        "parameters": _parameters(cause, machine),
+        "parameters": parameters_of(
+            cause, next(one for one in machine.candidates if one.name == cause.name)
+        ),
         "indistinguishable_from": [one.name for one in cause.rivals],
         "rivals": [{"effect": one.name, "probability": one.probability} for one in cause.rivals],
         "implausible": list(cause.at_limit),
     }
 
 
-def _parameters(cause: Cause, machine: RecordedMachine) -> dict[str, Any]:
-    candidate = next(one for one in machine.candidates if one.name == cause.name)
+def parameters_of(cause: Cause, candidate: Candidate) -> dict[str, Any]:
+    """What each of its parameters is: in each cable, and the mean over the cables it acts on."""
+    named = {str(cable) for cable in cables_of(cause)}
     found: dict[str, Any] = {}
     for term in candidate.terms:
         if term.name not in cause.values:
             continue
         value, sigma = cause.values[term.name], cause.sigmas.get(term.name, 0.0)
-        entry = found.setdefault(term.parameter, {"values": [], "sigmas": [], "unit": term.unit})
-        entry["values"].append(value)
-        entry["sigmas"].append(sigma)
+        entry = found.setdefault(term.parameter, {"all": [], "named": [], "unit": term.unit})
+        entry["all"].append((value, sigma))
         if term.place:
             entry.setdefault("cables", {})[term.place] = value
             entry.setdefault("sigma_cables", {})[term.place] = sigma
+        if term.place in named:
+            entry["named"].append((value, sigma))
     for entry in found.values():
-        values, sigmas = entry.pop("values"), entry.pop("sigmas")
+        everywhere, there = entry.pop("all"), entry.pop("named")
+        values, sigmas = zip(*(there or everywhere), strict=True)
         entry["value"] = sum(values) / len(values)
         entry["sigma"] = sum(sigmas) / len(sigmas)
         if cause.name == "drive_harmonic":

@@ -19,7 +19,7 @@ from analysis.engine.way import AT_ONCE, LOST, WINDOWS, Way
 
 EFFORT, PATIENCE = 1000.0, 300.0
 """Whole simulations after which nothing is led on: some ten times all differences. At the beginning
-of the motion it is less: what is stuck there will not come far."""
+of the motion it is less: what is stuck there, above the noise, will not come far."""
 
 STEPS, STEPS_BETWEEN = 15, 5
 """So many steps are taken for each window, at most, and in those that had to be put in between:
@@ -88,8 +88,9 @@ def follow_ring(
     about: Followed | None = None
     while share < 1.0 and samples.effort < most:
         impatient = samples.effort > PATIENCE + (most - PATIENCE) * share
+        stuck = way.left(share) > way.allowed(share)
         # What is in phase over all of the time is nearly there.
-        if impatient and way.left(1.0) > AT_ONCE:
+        if impatient and stuck and way.left(1.0) > AT_ONCE:
             break
         passed, share = share, 1.0 if near else way.window(share)
         best = (ahead or {}).get(share, np.inf)

@@ -107,7 +107,9 @@ def _by_lines(
     singles = finder.singles(null)
     alone = [one for one in finder.ranked() if one.hypothesis.parts]
     if led is not None:
-        led.search.follow(_to_follow(refiner, null, led.single, alone), [*alone, *led.single], seen=True)
+        led.search.follow(
+            _to_follow(refiner, null, led.single, alone), [*alone, *led.single], seen=True
+        )
     if led is None or not led.search.arrived:
         finder.sets(most_causes)
     ranked = finder.ranked()

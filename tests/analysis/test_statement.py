@@ -2,8 +2,9 @@
 
 import pytest
 
-from analysis.diagnosis.statement import cables_of, not_ruled_out
+from analysis.diagnosis.statement import cables_of, not_ruled_out, parameters_of
 from analysis.engine.cause import Cause
+from analysis.engine.system import Candidate, Term
 
 
 def cause(values: dict[str, float], sigma: float) -> Cause:
@@ -25,6 +26,17 @@ def test_cables_are_those_that_stand_out_or_all_where_sizes_are_open(
     values: dict[str, float], sigma: float, cables: list[int]
 ) -> None:
     assert cables_of(cause(values, sigma)) == cables
+
+
+def test_a_size_is_the_mean_over_the_cables_it_acts_on_and_told_for_each_that_was_asked() -> None:
+    values = {"coulomb_n@2": 0.3, "coulomb_n@7": 0.2, "coulomb_n@1": 0.01}
+    terms = tuple(Term(one, "coulomb_n", "N", one[-1], 0.0, 5.0, 0.1) for one in values)
+    candidate = Candidate("pulley_presliding", "presliding", "plant", terms)
+    (told,) = parameters_of(cause(values, 0.02), candidate).values()
+    assert told["value"] == pytest.approx(0.25)
+    assert told["cables"] == {"2": 0.3, "7": 0.2, "1": 0.01}
+    (open_size,) = parameters_of(cause(values, 0.4), candidate).values()
+    assert open_size["value"] == pytest.approx(0.25)
 
 
 def test_where_nothing_is_named_what_is_likely_all_the_same_is_said() -> None:

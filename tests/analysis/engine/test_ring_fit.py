@@ -112,15 +112,19 @@ def test_a_faint_ring_two_turns_out_of_phase_is_followed_too(noise: float) -> No
     assert found.nuisance[0] == pytest.approx(2.0, abs=0.05)
 
 
-def test_out_of_patience_only_what_is_nearly_in_phase_is_led_on(
+def test_out_of_patience_what_is_stuck_above_the_noise_is_not_led_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    stuck = LetGo(ring(2.0 * SIGMA, 0.0, 0.3, 1.1), noise=0.2)
+    damping = state_of(DAMPING, 0.02)
+    patient = follow_ring(stuck, np.zeros(1), damping)
+    assert patient.to_end
     monkeypatch.setattr(ring_fit, "PATIENCE", -1e6)
-    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise=0.2)
-    nearly = follow_ring(system, np.array([1.99]))
-    assert nearly.to_end
-    assert nearly.nuisance[0] == pytest.approx(2.0, abs=0.005)
-    assert not follow_ring(system, np.zeros(1)).to_end
+    given_up = follow_ring(stuck, np.zeros(1), damping)
+    assert not given_up.to_end
+    assert given_up.effort < 0.5 * patient.effort
+    at_the_noise = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise=0.2)
+    assert follow_ring(at_the_noise, np.zeros(1), damping).to_end
 
 
 def test_no_more_is_simulated_than_is_looked_at() -> None:
