@@ -153,16 +153,18 @@ def compare(
     DataError
         The run has no motion, too short a motion, or nothing measured in it.
     """
+    from analysis.diagnosis.onset import as_it_moved
     from model import simulate
 
-    excitation = run.start.excitation
-    if excitation.amplitude_deg == 0.0:
+    if run.start.excitation.amplitude_deg == 0.0:
         raise DataError(
             "the run has no motion: its amplitude is 0 deg",
             where=str(run.folder / "start.json"),
             remedy="compare a run that was excited",
         )
-    warnings = [*run.notes, *notes, *_warnings(run, rig)]
+    run, moved = as_it_moved(run, pose) if run.start.motion_start_known else (run, [])
+    excitation = run.start.excitation
+    warnings = [*run.notes, *notes, *_warnings(run, rig), *moved]
     simulation = simulate(rig or run.rig, excitation, nominal=run.rig)
     angle = measured_angle(run, pose, excitation.axis)
     cables = measured_cables(run)

@@ -1,12 +1,13 @@
 """The commanded motion X*(t) with its two derivatives (Eq. 20 and design, section 4)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdpr8.rigfile.schema import Excitation
+from cdpr8.rigfile.schema import Ending, Excitation, Ramp
 
 Array = NDArray[np.float64]
 Command = tuple[Array, Array, Array]
@@ -69,11 +70,15 @@ class RampedSine:
     start_s, motion_s
         Start and length of the motion.
     ramp_s
-        Over this time w rises from 0 to 1, and falls back before the end; 0 for w = 1 throughout.
+        Over this time w rises from 0 to 1; 0 for w = 1 throughout.
     duration_s
         With the rest before and after.
     phase_rad
         Added to 2 pi f tau.
+    ramp
+        The law by which w rises and, mirrored, falls.
+    ending
+        Whether it falls over the last `ramp_s` of the motion, over as long after it, or at once.
     """
 
     axis: int
@@ -84,6 +89,8 @@ class RampedSine:
     ramp_s: float
     duration_s: float
     phase_rad: float = 0.0
+    ramp: Ramp = "quintic"
+    ending: Ending = "ramp_within"
 
     @classmethod
     def from_excitation(cls, excitation: Excitation) -> Self:
@@ -96,12 +103,14 @@ class RampedSine:
             motion_s=excitation.motion_s,
             ramp_s=excitation.ramp_s,
             duration_s=excitation.duration_s,
+            ramp=excitation.ramp,
+            ending=excitation.ending,
         )
 
     @property
     def end_s(self) -> float:
-        """When the motion ends."""
-        return self.start_s + self.motion_s
+        """When the motion ends, with its last ramp."""
+        return self.start_s + self.motion_s + self.ramp_s * (self.ending == "ramp_beyond")
 
     @property
     def breaks_s(self) -> tuple[float, ...]:
@@ -110,8 +119,8 @@ class RampedSine:
 
     @property
     def steady_window_s(self) -> tuple[float, float]:
-        """From the end of the first ramp to the start of the last."""
-        return self.start_s + self.ramp_s, self.end_s - self.ramp_s
+        """From the end of the first ramp to the start of the last, if there is one."""
+        return self.start_s + self.ramp_s, self.end_s - self.ramp_s * (self.ending != "at_once")
 
     def at(self, time_s: Array, within_s: Array | None = None) -> Command:
         """X*, X*' and X*''; see `Motion.at`."""
@@ -119,7 +128,7 @@ class RampedSine:
         within = time_s if within_s is None else within_s
         moving = np.broadcast_to((within >= self.start_s) & (within <= self.end_s), time_s.shape)
         tau = time_s - self.start_s
-        window, window_1, window_2 = self._window(tau)
+        window, window_1, window_2 = self._window(tau, within - self.start_s)
         circular = 2.0 * np.pi * self.frequency_hz
         angle_rad = circular * tau + self.phase_rad
         sine, cosine = np.sin(angle_rad), np.cos(angle_rad)
@@ -138,17 +147,22 @@ class RampedSine:
         pose[..., 3 + self.axis] = self.amplitude_rad * values
         return pose
 
-    def _window(self, tau: Array) -> Command:
+    def _window(self, tau: Array, within: Array) -> Command:
         """w, w' and w'': up over the first ramp, down over the last."""
         if self.ramp_s == 0.0:
             return np.ones_like(tau), np.zeros_like(tau), np.zeros_like(tau)
-        up, up_1, up_2 = smooth_step(tau / self.ramp_s)
-        down, down_1, down_2 = smooth_step((self.motion_s - tau) / self.ramp_s)
-        return (
-            up * down,
-            (up_1 * down - up * down_1) / self.ramp_s,
-            (up_2 * down - 2.0 * up_1 * down_1 + up * down_2) / self.ramp_s**2,
-        )
+        up, up_1, up_2 = self._rise(tau, within)
+        if self.ending == "at_once":
+            return up, up_1, up_2
+        length_s = self.end_s - self.start_s
+        down, down_1, down_2 = self._rise(length_s - tau, length_s - within)
+        return up * down, up_1 * down - up * down_1, up_2 * down - 2.0 * up_1 * down_1 + up * down_2
+
+    def _rise(self, tau: Array, within: Array) -> Command:
+        """One ramp and its derivatives in time; beyond it, it does not bend."""
+        rise, rise_1, rise_2 = RAMPS[self.ramp](np.clip(tau / self.ramp_s, 0.0, 1.0))
+        bends = (within >= 0.0) & (within <= self.ramp_s)
+        return rise, rise_1 / self.ramp_s, bends * rise_2 / self.ramp_s**2
 
 
 def smooth_step(x: Array) -> Command:
@@ -159,3 +173,32 @@ def smooth_step(x: Array) -> Command:
         30.0 * x**2 * (1.0 - x) ** 2,
         60.0 * x * (1.0 - x) * (1.0 - 2.0 * x),
     )
+
+
+def raised_cosine_step(x: Array) -> Command:
+    """(1 - cos pi x)/2 on [0, 1] and its derivatives: the second is not zero at the ends."""
+    angle = np.pi * x
+    return 0.5 - 0.5 * np.cos(angle), 0.5 * np.pi * np.sin(angle), 0.5 * np.pi**2 * np.cos(angle)
+
+
+def cubic_step(x: Array) -> Command:
+    """3 x^2 - 2 x^3 on [0, 1] and its derivatives: the second is not zero at the ends."""
+    return x**2 * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x), 6.0 - 12.0 * x
+
+
+def septic_step(x: Array) -> Command:
+    """35 x^4 - 84 x^5 + 70 x^6 - 20 x^7 on [0, 1]: three derivatives vanish at both ends."""
+    return (
+        x**4 * (35.0 - 84.0 * x + 70.0 * x**2 - 20.0 * x**3),
+        140.0 * x**3 * (1.0 - x) ** 3,
+        420.0 * x**2 * (1.0 - x) ** 2 * (1.0 - 2.0 * x),
+    )
+
+
+RAMPS: dict[Ramp, Callable[[Array], Command]] = {
+    "quintic": smooth_step,
+    "raised_cosine": raised_cosine_step,
+    "cubic": cubic_step,
+    "septic": septic_step,
+}
+"""How w rises from 0 to 1, with its first and second derivative."""

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from analysis.align import find_start_shift
+from analysis.diagnosis.onset import as_it_moved
 from analysis.diagnosis.recording import Recording, recording
 from analysis.series import measured_cables, measured_tension
 from analysis.tracking import poses_of
@@ -72,6 +73,8 @@ def _prepare(run: Run, rig: Rig | None, step: Callable[[], None] | None) -> Reco
             f"the run does not say when its motion started: found {shift:+.3f} s from "
             "what it says; what is late in pose and tensions alike cannot be told"
         )
+    run, moved = as_it_moved(run, pose, shift)
+    notes += moved
     made = recording(run, pose, shift)
     return replace(made, notes=(*run.notes, *notes, *made.notes))
 

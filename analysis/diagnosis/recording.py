@@ -110,7 +110,8 @@ class Recording:
     @property
     def output_hz(self) -> float:
         """Rows a second of a simulation of it."""
-        return ABRUPT_HZ if self.excitation.ramp_s == 0.0 else OUTPUT_HZ
+        abrupt = self.excitation.ramp_s == 0.0 or self.excitation.ending == "at_once"
+        return ABRUPT_HZ if abrupt else OUTPUT_HZ
 
 
 def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Recording:
@@ -171,7 +172,8 @@ def segments(
     if excitation.amplitude_deg == 0.0:
         return (Segment(first_s, last_s + 1e-9, None, LINES_HZ, name="whole"),)
     start, end = excitation.start_s + shift_s, excitation.end_s + shift_s
-    steady = (start + excitation.ramp_s, min(end - excitation.ramp_s, last_s + 1e-9))
+    first, last = (one + shift_s for one in excitation.steady_window_s)
+    steady = (first, min(last, last_s + 1e-9))
     found: list[Segment] = []
 
     def free(a: float, b: float, name: str) -> None:

@@ -8,6 +8,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
+from cdpr8.rigfile.schema import Excitation
 from cdpr8.runfolder.records import Node, StartRecord, StopRecord
 from cdpr8.runfolder.tables import (
     SCHEMA_VERSION,
@@ -65,7 +66,11 @@ def schemas() -> dict[str, dict[str, Any]]:
             "description": table.meaning,
             "type": "object",
             "properties": {column.name: _property(column) for column in table.columns},
-            "required": [column.name for column in table.columns if not column.optional],
+            "required": [
+                column.name
+                for column in table.columns
+                if not column.optional and column.left_out is None
+            ],
         }
     return found
 
@@ -118,23 +123,39 @@ def _property(column: Column) -> dict[str, Any]:
 
 
 def _table_section(table: Table) -> str:
-    rows = "\n".join(
-        f"| `{c.name}` | {c.unit} | {c.meaning}{' (may be empty)' if c.optional else ''} |"
-        for c in table.columns
-    )
+    rows = "\n".join(f"| `{c.name}` | {c.unit} | {c.meaning}{_freedom(c)} |" for c in table.columns)
     head = "| column | unit | meaning |\n|---|---|---|"
     return f"## {table.file}\n\n{table.meaning}\n\n{head}\n{rows}\n"
 
 
+def _freedom(column: Column) -> str:
+    if column.optional:
+        return " (may be empty, or left out)"
+    return "" if column.left_out is None else f" (left out: {column.left_out})"
+
+
 def _start_section() -> str:
-    """The keys of start.json that do not speak for themselves, and those of each amplifier."""
+    """The keys of start.json that do not speak for themselves, of the motion, of an amplifier."""
+    records = (("", StartRecord), ("excitation.", Excitation), ("nodes[].", Node))
     rows = [
         f"| `{prefix}{name}` | {field.description} |"
-        for prefix, record in (("", StartRecord), ("nodes[].", Node))
+        for prefix, record in records
         for name, field in record.model_fields.items()
         if field.description
     ]
-    return "## start.json\n\n| key | meaning |\n|---|---|\n" + "\n".join(rows) + "\n"
+    return "## start.json\n\n| key | meaning |\n|---|---|\n" + "\n".join(rows) + "\n" + _MOTION
+
+
+_MOTION = """
+### The motion
+
+X* = 0 until `motion_start_s` (left out: `rest_s`). From there, with tau counted from it, the
+angle about `axis` is `amplitude_deg` w(tau) sin(2 pi `frequency_hz` tau), and then 0 again. w rises
+from 0 to 1 over `ramp_s` by the law `ramp` and falls by the same law as `ending` says. A program
+that leaves `ramp` or `ending` out does not state them: `analysis` then finds out from the onset and
+the end of the motion which of these laws it was, and says so. X_p0 and X_w0
+are added to the state at tau = 0.
+"""
 
 
 def _bits(flags: type[IntFlag]) -> str:

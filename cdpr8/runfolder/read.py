@@ -167,16 +167,18 @@ def read_table(path: Path, table: Table, notes: list[str]) -> "pd.DataFrame":
             where=str(path),
             allowed="comma-separated, UTF-8, columns " + ",".join(table.names),
         ) from None
-    missing = [c.name for c in table.columns if c.name not in frame and not c.optional]
+    needed = [c.name for c in table.columns if not c.optional and c.left_out is None]
+    missing = [name for name in needed if name not in frame]
     if missing:
         raise DataError(
             f"lacks the column{'s' if len(missing) > 1 else ''} {', '.join(missing)}",
             where=f"{path}:1",
             allowed="columns " + ",".join(table.names),
+            remedy=f"only {', '.join(needed)} must be there",
         )
     for column in table.columns:
         if column.name not in frame:
-            frame[column.name] = float("nan")
+            frame[column.name] = float("nan") if column.left_out is None else column.left_out
         elif column.type != "string":
             frame[column.name] = _numbers(frame[column.name], column.type, path, column.optional)
     return frame

@@ -20,10 +20,11 @@ class Node(Record):
 
     cable: int = Field(ge=1, le=8)
     address: int
-    identity: str = Field(description="the answer to IDN?")
+    identity: str = Field(default="", description="the answer to IDN?")
     settings: dict[str, str] = Field(
+        default_factory=dict,
         description="command -> answer: written and read back, and the amplifier's own curve (LDW, "
-        "LWT), linearisation (LIC), zero at power-on (ZSE) and trigger (TRC); ? where it has none"
+        "LWT), linearisation (LIC), zero at power-on (ZSE) and trigger (TRC); ? where it has none",
     )
     found: dict[str, str] = Field(
         default_factory=dict,

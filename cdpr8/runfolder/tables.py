@@ -81,7 +81,10 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True)
 class Column:
-    """One column: what a cell holds and whether it may be empty (not measured)."""
+    """One column: what a cell holds, and whether it may be empty or left out (not measured).
+
+    With `left_out` the column may be left out as a whole, by other programs: it then holds that.
+    """
 
     name: str
     type: Literal["number", "integer", "string"]
@@ -89,6 +92,7 @@ class Column:
     unit: str = ""
     optional: bool = False
     digits: int | None = None
+    left_out: int | None = None
 
 
 @dataclass(frozen=True)
@@ -113,7 +117,7 @@ TENSION = Table(
         Column("cable", "integer", "cable number, 1 to 8"),
         Column("digits", "integer", "raw value of the amplifier, never altered", optional=True),
         Column("tension_n", "number", "digits, scaled: positive pulls", "N", digits=6),
-        Column("status", "integer", "status bits, see below"),
+        Column("status", "integer", "status bits, see below", left_out=0),
         Column("request_s", "number", "when the value was asked for, or triggered", "s", True, 6),
         Column("received_s", "number", "when its last byte had come", "s", True, 6),
     ),
@@ -125,7 +129,7 @@ FRAMES = Table(
     (
         Column("frame", "integer", "frame number from 0, the order in video.mkv"),
         Column("t_s", "number", "mid-exposure, camera clock", "s", digits=6),
-        Column("flags", "integer", "frame flag bits, see below"),
+        Column("flags", "integer", "frame flag bits, see below", left_out=0),
     ),
 )
 
@@ -177,10 +181,10 @@ POSE = Table(
             )
             for a, b in combinations(POSE_AXES, 2)
         ),
-        Column("markers", "integer", "markers used"),
+        Column("markers", "integer", "markers used", left_out=0),
         Column("reproj_px", "number", "rms reprojection error", "px", True, 4),
         Column("ratio", "number", "second-best over best reprojection error", "", True, 3),
-        Column("flags", "integer", "frame flag bits, see below"),
+        Column("flags", "integer", "frame flag bits, see below", left_out=0),
         Column("blur_px", "number", "standard deviation of the point spread", "px", True, 3),
     ),
 )

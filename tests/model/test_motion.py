@@ -6,10 +6,20 @@ from model.motion import RampedSine
 from model.steps import divide
 
 RECORDED = RampedSine.from_excitation(Excitation(rest_s=1.0, motion_s=8.0, ramp_s=0.5))
+OTHERS = [
+    RampedSine.from_excitation(
+        Excitation(rest_s=1.0, motion_s=8.0, ramp_s=0.5, ramp=ramp, ending=ending)
+    )
+    for ramp, ending in [
+        ("raised_cosine", "ramp_within"),
+        ("cubic", "ramp_beyond"),
+        ("septic", "at_once"),
+    ]
+]
 AT_ONCE = RampedSine.from_excitation(Excitation(rest_s=1.0, motion_s=8.0, ramp_s=0.0))
 
 
-@pytest.mark.parametrize("motion", [RECORDED, AT_ONCE])
+@pytest.mark.parametrize("motion", [RECORDED, AT_ONCE, *OTHERS])
 def test_rates_and_accelerations_are_derivatives(motion: RampedSine) -> None:
     time_s = np.linspace(0.01, 9.9, 4001)
     time_s = time_s[np.abs(time_s[:, None] - motion.breaks_s).min(axis=1) > 1e-3]
@@ -29,6 +39,26 @@ def test_a_ramp_keeps_the_acceleration_continuous(at_s: float) -> None:
         RECORDED.at(np.array(at_s - 1e-9)), RECORDED.at(np.array(at_s + 1e-9)), strict=True
     ):
         assert before == pytest.approx(after, abs=1e-5)
+
+
+@pytest.mark.parametrize("motion", OTHERS[:2])
+def test_other_ramps_rise_and_fall_whole(motion: RampedSine) -> None:
+    whole = np.deg2rad(2.0)
+    first, last = motion.steady_window_s
+    assert last == motion.end_s - 0.5
+    for edge in (motion.start_s, motion.end_s):
+        for values in motion.at(np.array([edge - 1e-7, edge + 1e-7]))[:2]:
+            assert np.abs(values).max() < 1e-4
+    angle, rate, _ = motion.at(np.array([first - 1e-9, first + 1e-9]))
+    assert np.ptp(angle[:, 4]) < 1e-8 * whole + 1e-9
+    assert np.ptp(rate[:, 4]) < 1e-6
+
+
+def test_a_motion_that_ends_at_once_is_steady_to_its_end() -> None:
+    motion = OTHERS[2]
+    assert motion.steady_window_s == (1.5, 9.0)
+    angle = motion.at(np.array(8.999))[0][4]
+    assert angle == pytest.approx(np.deg2rad(2.0) * np.sin(2.0 * np.pi * 2.06 * 7.999))
 
 
 def test_the_platform_rests_before_and_after_and_is_steady_between() -> None:

@@ -88,8 +88,10 @@ def _angle(excitation: Excitation, fault: DriveFault) -> Callable[..., Array]:
             phase = fault.harmonic_order * circular * tau + fault.harmonic_phase_rad
             value = value + fault.harmonic_share * np.sin(phase)
         if excitation.ramp_s > 0.0:
-            value = value * _rise(tau / excitation.ramp_s)
-            value = value * _rise((excitation.motion_s - tau) / excitation.ramp_s)
+            beyond_s = excitation.ramp_s if excitation.ending == "ramp_beyond" else 0.0
+            value = value * _rise(tau / excitation.ramp_s, excitation.ramp)
+            left_s = excitation.motion_s + beyond_s - tau
+            value = value * _rise(left_s / excitation.ramp_s, excitation.ramp)
         elif not free:
             value = value * ((tau >= 0.0) & (tau <= excitation.motion_s))
         return np.asarray(amplitude * value)
@@ -97,9 +99,11 @@ def _angle(excitation: Excitation, fault: DriveFault) -> Callable[..., Array]:
     return at
 
 
-def _rise(x: Array) -> Array:
-    """From 0 to 1 with two smooth derivatives at both ends (quintic)."""
+def _rise(x: Array, law: str) -> Array:
+    """From 0 to 1: a raised cosine, or with two smooth derivatives at both ends (quintic)."""
     x = np.clip(x, 0.0, 1.0)
+    if law == "raised_cosine":
+        return np.asarray(np.sin(0.5 * np.pi * x) ** 2)
     return np.asarray(x * x * x * (10.0 + x * (6.0 * x - 15.0)))
 
 
