@@ -389,6 +389,17 @@ def test_damping_is_viscous_drag_quadratic_and_an_umbilical_a_spring() -> None:
     assert spring.in_phase[1] == pytest.approx(-10 * 0.02)
 
 
+def test_an_umbilical_tied_on_beside_the_centre_turns_the_platform_back() -> None:
+    """A spring k at an arm a: a turn by theta pulls with k a theta, and turns with k a^2 theta."""
+    wrench = library()["umbilical"].wrench
+    assert wrench is not None
+    turned, arm, spring = 1e-4, 0.1, 200.0
+    at = (arm, 0.0, 0.0)
+    found = wrench(spring, 0.0, 0.0, *at, 0.0, 0.0, 0.0, 0.0, turned, 0.0, *([0.0] * 6))
+    wanted = [0.0, 0.0, spring * arm * turned, 0.0, -spring * arm**2 * turned, 0.0]
+    assert list(found) == pytest.approx(wanted, abs=1e-6)
+
+
 # What belongs to one side.
 
 
