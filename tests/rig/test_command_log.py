@@ -3,7 +3,6 @@
 import json
 import socket
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig_stand_ins import WavePlatform, at_origin, motion, record_virtually, rig_text, virtual_clock
+from slow_motion import SlowMotion, slowed
 
-from cdpr8.clock import RealClock
 from cdpr8.errors import DataError, DeviceError, UsageError
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import (
@@ -45,15 +44,22 @@ from rig.verify import Verdict, verify
 MAP = "time=t,1=L1,2=L2,2.measured_deg=E2"
 
 
+Act = Callable[[Callable[[float], None]], None]
+"""Writes a log; given what waits until a time of the run."""
+
+
 def recorded(
-    rig: Rig, folder: Path, log: CommandLog, seconds: float, act: Callable[[float], None]
+    rig: Rig, folder: Path, log: CommandLog, seconds: float, act: Act
 ) -> tuple[Recording, Run]:
     """A recording of `seconds`, while `act` writes a log on a thread of its own."""
-    clock = RealClock()
-    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+    clock = SlowMotion()
+    machine = slowed(assemble(rig, WavePlatform(), None, clock, seed=1), clock)
 
     def act_beside(origin_s: float) -> None:
-        threading.Thread(target=act, args=(origin_s,), daemon=True).start()
+        def until(t_s: float) -> None:
+            clock.sleep_until(origin_s + t_s)
+
+        threading.Thread(target=act, args=(until,), daemon=True).start()
 
     at_origin(machine, act_beside)
     recording = record(
@@ -73,10 +79,10 @@ def line(number: int, ahead_s: float) -> str:
     return f"{ahead_s + number / 100:.3f};{2.0 + number / 1000:.4f};2.5;{number}\n"
 
 
-def writing(write: Callable[[str], None], count: int) -> Callable[[float], None]:
-    def act(origin_s: float) -> None:
+def writing(write: Callable[[str], None], count: int) -> Act:
+    def act(until: Callable[[float], None]) -> None:
         for number in range(count):
-            time.sleep(max(0.0, origin_s + number / 100 - time.monotonic_ns() * 1e-9))
+            until(number / 100)
             write(line(number, 5000.0))
 
     return act
@@ -110,8 +116,8 @@ def test_a_growing_file_is_recorded_and_kept_as_it_came(rig: Rig, tmp_path: Path
         file.write(text)
         file.flush()
 
-    def act(origin_s: float) -> None:
-        writing(write, 60)(origin_s)
+    def act(until: Callable[[float], None]) -> None:
+        writing(write, 60)(until)
         write("trip of the safety relay\n")
 
     recording, run = recorded(rig, tmp_path / "run", log, 1.0, act)
@@ -135,10 +141,10 @@ def test_lines_over_tcp_are_recorded_and_a_lost_connection_is_told(
     server = socket.create_server(("127.0.0.1", 0))
     log = open_command_log(f"tcp://127.0.0.1:{server.getsockname()[1]}", MAP.replace("t,", "1,", 1))
 
-    def act(origin_s: float) -> None:
+    def act(until: Callable[[float], None]) -> None:
         connection, _ = server.accept()
         connection.sendall(b"t;L1;L2;E2\r\n")
-        writing(lambda text: connection.sendall(text.encode()), 40)(origin_s)
+        writing(lambda text: connection.sendall(text.encode()), 40)(until)
         connection.close()
 
     recording, run = recorded(rig, tmp_path / "run", log, 0.8, act)
