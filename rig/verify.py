@@ -78,28 +78,42 @@ def _ending(run: Run) -> Iterator[Finding]:
 
 
 def _cables(run: Run) -> Iterator[Finding]:
+    end_s = _end_s(run)
     for cable in range(1, CABLES + 1):
         times = run.cable_tension(cable)["t_s"].to_numpy(dtype=float)
+        if not len(times) and run.start.import_map is not None:
+            yield Finding(Verdict.WARN, f"cable {cable}", "not in the imported table")
+            continue
         if len(times) < 3:
             yield Finding(Verdict.FAIL, f"cable {cable}", f"{len(times)} good values")
             continue
-        steps = np.diff(times)
-        usual = float(np.median(steps))
+        usual = float(np.median(np.diff(times)))
+        # Silence at the beginning and at the end is missing as well.
+        steps = np.diff(times, prepend=min(0.0, times[0]), append=max(end_s, times[-1]))
         gaps = steps[steps > GAP_INTERVALS * usual]
         stuck = _flagged(run, cable, TensionStatus.STALE)
+        inner = np.diff(times)
         words = (
-            f"{len(times) / (times[-1] - times[0]):.1f}/s, usual interval {1e3 * usual:.2f} ms, "
-            f"jitter {1e3 * float(np.std(steps[steps <= GAP_INTERVALS * usual])):.2f} ms"
+            f"{len(times) / float(steps.sum()):.1f}/s, usual interval {1e3 * usual:.2f} ms, "
+            f"jitter {1e3 * float(np.std(inner[inner <= GAP_INTERVALS * usual])):.2f} ms"
         )
         if len(gaps):
             words += f", gaps: {len(gaps)}, the longest {gaps.max():.3f} s"
+        if steps[-1] > GAP_INTERVALS * usual:
+            words += f": silent from {times[-1]:.3f} s to the end"
         if stuck:
             words += f", stuck values: {stuck}"
-        missing = float(gaps.sum()) / float(times[-1] - times[0])
+        missing = float(gaps.sum()) / float(steps.sum())
         verdict = Verdict.OK
         if len(gaps) or stuck:
             verdict = Verdict.FAIL if missing > MOST_LOST or stuck else Verdict.WARN
         yield Finding(verdict, f"cable {cable}", words)
+
+
+def _end_s(run: Run) -> float:
+    """When the run ended, in its own time; of one that was interrupted, its newest value."""
+    newest_s = float(run.tension["t_s"].max()) if len(run.tension) else 0.0
+    return newest_s if run.stop is None else max(newest_s, run.stop.t_s)
 
 
 def _skew(run: Run) -> Iterator[Finding]:
@@ -111,8 +125,12 @@ def _skew(run: Run) -> Iterator[Finding]:
         times = run.cable_tension(cable)["t_s"].to_numpy(dtype=float)
         if len(times) < 3:
             continue
-        after = np.clip(np.searchsorted(times, first), 1, len(times) - 1)
-        nearest = np.minimum(np.abs(times[after] - first), np.abs(times[after - 1] - first))
+        # Of sweeps in which both gave values.
+        both = first[(first >= times[0]) & (first <= times[-1])]
+        if not len(both):
+            continue
+        after = np.clip(np.searchsorted(times, both), 1, len(times) - 1)
+        nearest = np.minimum(np.abs(times[after] - both), np.abs(times[after - 1] - both))
         spread = max(spread, float(np.median(nearest)))
     words = f"values of one sweep lie up to {1e3 * spread:.2f} ms apart; each has its own time"
     if run.start.sweep == "broadcast":
@@ -228,7 +246,12 @@ def _command(run: Run) -> Iterator[Finding]:
 
 def _clocks(run: Run) -> Iterator[Finding]:
     anchors = [(run.start.clock_anchor.t_s, run.start.clock_anchor.wall.timestamp())]
-    anchors += list(_anchors(run.events))
+    noted, unreadable = _anchors(run.events)
+    anchors += noted
+    if unreadable:
+        yield Finding(
+            Verdict.WARN, "files", f"events.csv: a clock_anchor is no date: {unreadable[0]!r}"
+        )
     if run.stop is not None:
         anchors.append((run.stop.clock_anchor.t_s, run.stop.clock_anchor.wall.timestamp()))
     run_s, wall_s = np.array(anchors).T
@@ -245,14 +268,19 @@ def _clocks(run: Run) -> Iterator[Finding]:
         yield Finding(Verdict.OK, "clock", "no step (a run of 60 s also tells the drift)")
 
 
-def _anchors(events: "pd.DataFrame") -> Iterator[tuple[float, float]]:
+def _anchors(events: "pd.DataFrame") -> tuple[list[tuple[float, float]], list[str]]:
+    """Times of the run with their wall times in s, and what stands where a date should."""
     from datetime import datetime
 
-    if not len(events):
-        return
-    rows = events[events["kind"] == EventKind.CLOCK_ANCHOR.value]
-    for t_s, words in zip(rows["t_s"], rows["detail"], strict=True):
-        yield float(t_s), datetime.fromisoformat(str(words)).timestamp()
+    found, unreadable = [], []
+    if len(events):
+        rows = events[events["kind"] == EventKind.CLOCK_ANCHOR.value]
+        for t_s, words in zip(rows["t_s"], rows["detail"], strict=True):
+            try:
+                found.append((float(t_s), datetime.fromisoformat(str(words)).timestamp()))
+            except ValueError:
+                unreadable.append(str(words))
+    return found, unreadable
 
 
 def _flagged(run: Run, cable: int, bits: TensionStatus) -> int:
