@@ -111,9 +111,20 @@ def _cables(run: Run) -> Iterator[Finding]:
 
 
 def _end_s(run: Run) -> float:
-    """When the run ended, in its own time; of one that was interrupted, its newest value."""
-    newest_s = float(run.tension["t_s"].max()) if len(run.tension) else 0.0
-    return newest_s if run.stop is None else max(newest_s, run.stop.t_s)
+    """Until when values were due, in s of the run.
+
+    The stop record comes later than that, by what the streams took to end.
+    """
+    told = run.events[~run.events["kind"].isin(_LAST_WORDS)]
+    ends_s = [float(table["t_s"].max()) for table in (run.tension, told) if len(table)]
+    newest_s = max(ends_s, default=0.0)
+    if run.stop is None or run.stop.reason != "duration":
+        return newest_s
+    return max(newest_s, min(run.stop.t_s, run.start.excitation.duration_s))
+
+
+_LAST_WORDS = (EventKind.INTERRUPTED.value, EventKind.DISK_FULL.value)
+"""Events of the ending."""
 
 
 def _skew(run: Run) -> Iterator[Finding]:

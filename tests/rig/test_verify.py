@@ -55,6 +55,7 @@ def test_a_cable_that_fell_silent_for_good_fails_and_does_not_stretch_the_skew(
     assert "silent from 0.49" in words
     assert words.endswith("to the end")
     assert found["cable 4"][0] is Verdict.OK
+    assert "silent" not in found["cable 4"][1]
     assert found["skew"][1].startswith("values of one sweep lie up to 3.")
 
 
