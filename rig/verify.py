@@ -100,7 +100,7 @@ def _cables(run: Run) -> Iterator[Finding]:
         if len(gaps):
             words += f", gaps: {len(gaps)}, the longest {gaps.max():.3f} s"
         if steps[-1] > GAP_INTERVALS * usual:
-            words += f": silent from {times[-1]:.3f} s to the end"
+            words += f": none good from {times[-1]:.3f} s to the end"
         if stuck:
             words += f", stuck values: {stuck}"
         missing = float(gaps.sum()) / float(steps.sum())

@@ -217,7 +217,7 @@ def test_identities_are_read_leniently(answer: bytes, type_: str, profile: objec
 
 
 def test_nothing_is_assumed_of_an_unknown_type() -> None:
-    with pytest.raises(DeviceError, match="'WE2107', of which no dialect is known"):
+    with pytest.raises(DeviceError, match="number 1234567 is a 'WE2107', of which no dialect"):
         profile_of(Identity.parse(b'HBM,"WE2107         ","1234567",P61\r\n'))
     with pytest.raises(DeviceError, match="allowed: four parts"):
         Identity.parse(b"H\x00\xff\r\n")

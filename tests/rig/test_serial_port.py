@@ -129,6 +129,19 @@ def test_a_missing_port_is_told_with_those_there_are() -> None:
     assert "ports here:" in told.value.sentence()
 
 
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("notes.txt", "notes.txt' is no serial port"), (".", "' is no serial port"), ("", "no port")],
+)
+def test_what_is_no_port_is_called_so(tmp_path: Path, name: str, message: str) -> None:
+    (tmp_path / "notes.txt").write_text("not a device")
+    path = str(tmp_path / name) if name else ""
+    with pytest.raises(DeviceError, match="ports here:") as told:
+        open_serial_port(path, LINE, RealClock())
+    assert message in told.value.what
+    assert "Errno" not in told.value.sentence()
+
+
 def test_a_name_that_vanishes_while_it_is_read_is_a_port_that_is_not_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -52,10 +52,10 @@ def test_a_cable_that_fell_silent_for_good_fails_and_does_not_stretch_the_skew(
     verdict, words = found["cable 3"]
     assert verdict is Verdict.FAIL
     assert words.startswith("3")  # about 131/s for a quarter of the time
-    assert "silent from 0.49" in words
+    assert "none good from 0.49" in words
     assert words.endswith("to the end")
     assert found["cable 4"][0] is Verdict.OK
-    assert "silent" not in found["cable 4"][1]
+    assert "none good" not in found["cable 4"][1]
     assert found["skew"][1].startswith("values of one sweep lie up to 3.")
 
 
