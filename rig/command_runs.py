@@ -21,7 +21,8 @@ def verify_command(
     """
     from cdpr8.errors import CheckError
     from cdpr8.runfolder import find_run, load_run
-    from rig.verify import Verdict, verify
+    from rig.finding import Verdict
+    from rig.verify import verify
 
     folder = find_run(run)
     findings = verify(load_run(folder))

@@ -2,16 +2,16 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cdpr8 import CABLES
 from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+from rig.finding import Finding, Verdict
 from rig.outcome import REASONS, in_words
 from rig.station import by_cables
+from rig.verify_command import command_log
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,31 +22,6 @@ GAP_INTERVALS = 5.0
 MOST_LOST = 0.01
 MOST_DRIFT_PPM = 200.0
 CLOCK_STEP_S = 0.1
-MOST_LOG_RATE_ERROR = 0.1
-"""A command log that is tied by arrival, over a second or more, is no farther off than this."""
-
-
-class Verdict(StrEnum):
-    """What a check found."""
-
-    OK = "ok"
-    WARN = "warn"
-    FAIL = "FAIL"
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One line of the report.
-
-    Attributes
-    ----------
-    verdict, what, words
-        How it stands, what was looked at, and the figures.
-    """
-
-    verdict: Verdict
-    what: str
-    words: str
 
 
 def verify(run: Run) -> list[Finding]:
@@ -60,7 +35,7 @@ def verify(run: Run) -> list[Finding]:
         *_losses(run),
         *_overloads(run),
         *_frames(run),
-        *_command(run),
+        *command_log(run),
         *_clocks(run),
     ]
 
@@ -223,36 +198,6 @@ def _frames(run: Run) -> Iterator[Finding]:
     if dropped or repeated:
         words += f", {dropped} after a dropped one, {repeated} repeated"
     yield Finding(Verdict.WARN if dropped or repeated else Verdict.OK, "video", words)
-
-
-def _command(run: Run) -> Iterator[Finding]:
-    if run.command is None:
-        return
-    rows = run.command
-    times = np.unique(rows["t_s"].to_numpy(dtype=float))
-    if len(times) < 3:
-        yield Finding(Verdict.WARN, "command", f"{len(rows)} rows of the winch controller")
-        return
-    steps = np.diff(times)
-    words = (
-        f"{len(rows)} rows of {rows['cable'].nunique()} cables, "
-        f"{1.0 / float(np.median(steps)):.1f}/s, the longest gap {steps.max():.3f} s"
-    )
-    late_s = (rows["arrived_s"] - rows["t_s"]).dropna()
-    if len(late_s):
-        words += f", noticed up to {1e3 * float(late_s.max()):.0f} ms late"
-    lost = {} if run.stop is None else run.stop.lost
-    timed = rows[["log_s", "arrived_s"]].dropna().to_numpy(dtype=float)
-    if len(timed) > 2 and np.ptp(timed[:, 0]) > 0.0 and np.ptp(timed[:, 1]) > 1.0:
-        rate = float(np.ptp(timed[:, 0]) / np.ptp(timed[:, 1]))
-        if abs(rate - 1.0) > MOST_LOG_RATE_ERROR:
-            words += f"; its clock runs {rate:.4g} times as fast as the run's: is it in s?"
-            yield Finding(Verdict.FAIL, "command", words)
-            return
-    unread, gone = lost.get("command_line", 0), lost.get("command_log_lost", 0)
-    if unread or gone:
-        words += f", {unread} lines not understood, {gone} times gone"
-    yield Finding(Verdict.WARN if unread or gone else Verdict.OK, "command", words)
 
 
 def _clocks(run: Run) -> Iterator[Finding]:

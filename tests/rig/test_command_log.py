@@ -33,13 +33,14 @@ from rig.command_columns import QUANTITIES, CommandColumns, LineReader
 from rig.command_log import CommandLog, open_command_log
 from rig.command_stream import CommandStream
 from rig.ending import Recording
+from rig.finding import Verdict
 from rig.lines import CommandLine
 from rig.recorder import record
 from rig.scribe import DirectScribe
 from rig.simulated.rig import assemble
 from rig.streams import Span
 from rig.tally import Tally
-from rig.verify import Verdict, verify
+from rig.verify import verify
 
 MAP = "time=t,1=L1,2=L2,2.measured_deg=E2"
 
@@ -356,3 +357,17 @@ def test_a_log_whose_time_is_not_in_seconds_fails_its_check(rig: Rig, tmp_path: 
     (found,) = (each for each in verify(load_run(tmp_path / "run")) if each.what == "command")
     assert found.verdict is Verdict.FAIL
     assert "its clock runs 1000 times as fast as the run's: is it in s?" in found.words
+
+
+def test_what_the_log_held_before_the_run_began_makes_its_clock_not_run_fast(
+    rig: Rig, tmp_path: Path
+) -> None:
+    record_virtually(rig, tmp_path / "run", 3.0, camera=False)
+    # Three seconds of it were written while the amplifiers were being set up.
+    rows = [f"{n / 10},1,2.0,,,,{100 + n / 10},{max(0.0, n / 10)}" for n in range(-30, 30)]
+    heading = ",".join(column.name for column in COMMAND.columns)
+    (tmp_path / "run" / "command.csv").write_text("\n".join([heading, *rows, ""]))
+    (found,) = (each for each in verify(load_run(tmp_path / "run")) if each.what == "command")
+    assert found.verdict is Verdict.OK
+    assert "60 rows of 1 cables, 10.0/s" in found.words
+    assert "noticed up to 0 ms late" in found.words

@@ -10,7 +10,8 @@ from cdpr8.rigfile import Rig
 from cdpr8.runfolder import load_run
 from cdpr8.terminal import run_app
 from rig.command import app
-from rig.verify import Verdict, verify
+from rig.finding import Verdict
+from rig.verify import verify
 
 pytestmark = pytest.mark.usefixtures("here")
 
