@@ -240,10 +240,10 @@ def test_values_that_fit_no_format_are_refused() -> None:
         probe_format(Dialogue(script), 1, 24, 0)
 
 
-def test_a_probe_whose_first_answer_stays_away_is_made_again() -> None:
+def test_a_probe_whose_first_answers_stay_away_goes_on_asking() -> None:
     # Values of no length are not asked for: a serial port that gives none seems to be gone.
-    silence = [(b";", b""), (b"S01;", b"")]
-    values = [(b";", b""), *[(b"S01;", b"\x00\x27\x10\x00\r\n")] * 16, (b";", b"")]
+    silence = [(b";", b""), *[(b"S01;", b"")] * 3]
+    values = [*[(b"S01;", b"\x00\x27\x10\x00\r\n")] * 16, (b";", b"")]
     script = Conversation(silence + values)
     assert probe_format(Dialogue(script), 1, 24, 0).crlf
     assert script.over
