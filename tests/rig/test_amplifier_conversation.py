@@ -201,6 +201,17 @@ def test_a_node_that_stays_silent_is_asked_three_times() -> None:
     assert script.over
 
 
+def test_one_that_has_answered_is_asked_more_often_before_a_run() -> None:
+    # A computer that stands still again and again is not an amplifier that is gone.
+    silence = [(b"COF?;", b""), (b";", b"")] * 6
+    # After silence an answer is not believed before the question was put again.
+    script = Conversation([*silence, *[(b"COF?;", b"009\r\n")] * 2])
+    dialogue = Dialogue(script)
+    with dialogue.patiently():
+        assert dialogue.ask(b"COF?;") == b"009\r\n"
+    assert script.over
+
+
 @pytest.mark.parametrize(
     ("answer", "type_", "profile"),
     [
