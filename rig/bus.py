@@ -90,10 +90,11 @@ class Bus:
         self.stop()
         identities = call_the_roll(self._dialogue, self._rig)
         states = {}
-        for cable, amplifier in self._amplifiers.items():
-            node = NodeClient(self._dialogue, amplifier.address)
-            node.identify()
-            states[cable] = node.configure(self._settings)
+        with self._dialogue.patiently():  # all have answered, and nothing is recorded yet
+            for cable, amplifier in self._amplifiers.items():
+                node = NodeClient(self._dialogue, amplifier.address)
+                node.identify()
+                states[cable] = node.configure(self._settings)
         self._measure(message.ALL_MEASURE)
         stations = tuple(
             self._station(cable, identities[cable], states[cable]) for cable in self._amplifiers

@@ -28,7 +28,7 @@ def doctor_command(rig: RigOption = None, as_json: JsonOption = False) -> None:
     from cdpr8.errors import CheckError
     from cdpr8.rigfile import find_rig_file, load_rig
     from rig.doctor import diagnose
-    from rig.verify import Verdict
+    from rig.finding import Verdict
 
     found = list(diagnose(load_rig(find_rig_file(rig)), Path("runs")))
     if as_json:

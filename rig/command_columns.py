@@ -12,7 +12,7 @@ import numpy as np
 from cdpr8 import CABLES
 from cdpr8.errors import DataError, UsageError
 from cdpr8.runfolder.tables import COMMAND
-from rig.foreign import ForeignTable
+from rig.foreign_table import ForeignTable
 
 QUANTITIES: Mapping[str, tuple[str, float]] = {
     "commanded_m": ("commanded_m", 1.0),

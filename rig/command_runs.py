@@ -21,7 +21,8 @@ def verify_command(
     """
     from cdpr8.errors import CheckError
     from cdpr8.runfolder import find_run, load_run
-    from rig.verify import Verdict, verify
+    from rig.finding import Verdict
+    from rig.verify import verify
 
     folder = find_run(run)
     findings = verify(load_run(folder))
@@ -65,7 +66,7 @@ def export_command(
 
 
 def import_command(
-    tension: Annotated[Path, typer.Option(help="Table of tensions: text, in N.")],
+    tension: Annotated[Path, typer.Option(help="Table of tensions: text.")],
     map_: Annotated[
         str,
         typer.Option("--map", help="Which column is what: time=COLUMN,1=COLUMN,2=COLUMN ..."),
@@ -98,7 +99,8 @@ def import_command(
     --map "time=Time,1=Force 1,2=Force 2" --sync 2.31=1.04 --sync 58.77=57.49
     """
     from cdpr8.rigfile import files_beside, find_rig_file, load_rig
-    from rig.foreign import ClockMap, ColumnMap, read_foreign_table
+    from rig.foreign import ClockMap, ColumnMap, conversions
+    from rig.foreign_table import read_foreign_table
     from rig.import_run import import_run
 
     path = find_rig_file(rig)
@@ -109,12 +111,15 @@ def import_command(
         note("no --sync: the video is taken to start with the table")
     folder = Path("runs") / name
     rig_text = path.read_text(encoding="utf-8")
+    table = read_foreign_table(tension)
+    for words in conversions(table, columns, str(tension)):
+        note(f"the column {words}")
     stop = import_run(
         folder,
         load_rig(path),
         rig_text,
         str(path),
-        read_foreign_table(tension),
+        table,
         columns,
         str(tension),
         video=video,

@@ -11,7 +11,7 @@ from pathlib import Path
 from cdpr8.errors import DeviceError
 from cdpr8.provenance import versions
 from cdpr8.rigfile import Rig
-from rig.verify import Verdict
+from rig.finding import Verdict
 
 LEAST_FREE_BYTES = 2_000_000_000
 MOST_SYNC_S = 0.25

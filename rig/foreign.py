@@ -1,133 +1,45 @@
-"""Recordings made by other programs: a video and a table of tensions, on two clocks, into a run.
+"""Recordings made by other programs: which columns are what, in which units, and two clocks."""
 
-catman, and most others, export a table as text: some lines of heading, a line of names, perhaps one
-of units, then numbers; with tab, semicolon or comma between them, and a decimal point or comma.
-"""
-
-import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cdpr8 import CABLES
 from cdpr8.errors import DataError, UsageError
+from rig.foreign_table import ForeignTable
 
 Array = NDArray[np.float64]
-_NUMBER = re.compile(r"^[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?$")
 
+FORCES = {"N": 1.0, "Newton": 1.0, "mN": 1e-3, "daN": 10.0, "kN": 1e3, "KN": 1e3, "MN": 1e6}
+"""Units a table may say its forces are in, in N."""
 
-@dataclass(frozen=True)
-class ForeignTable:
-    """A table of numbers as another program wrote it.
+TIMES = {"s": 1.0, "sec": 1.0, "Sek": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0}
+"""Units a table may say its times are in, in s."""
 
-    Attributes
-    ----------
-    names
-        Of the columns, in order.
-    values
-        Shape (rows, columns); NaN where a cell was empty.
-    """
-
-    names: tuple[str, ...]
-    values: Array
-
-    def column(self, key: str, where: str, option: str = "--map") -> Array:
-        """A column by its name, or by its number from 1.
-
-        Raises
-        ------
-        UsageError
-            There is none.
-        """
-        if key in self.names:
-            return self.values[:, self.names.index(key)]
-        near = [name for name in self.names if name.lower().startswith(key.lower())]
-        if len(near) == 1:
-            return self.values[:, self.names.index(near[0])]
-        if key.isdecimal() and 1 <= int(key) <= len(self.names):
-            return self.values[:, int(key) - 1]
-        raise UsageError(
-            f"{option} names the column {key!r}, which the table lacks",
-            allowed=", ".join(
-                f"{number}: {name}" for number, name in enumerate(self.names, start=1)
-            ),
-            where=where,
-        )
-
-
-def read_foreign_table(path: Path) -> ForeignTable:
-    """Read a text table, whatever stands between and above its numbers.
-
-    Raises
-    ------
-    DataError
-        The file cannot be read, or holds no table of numbers.
-    """
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise DataError(f"cannot be read: {error.strerror}", where=str(path)) from None
-    text = raw.decode("utf-8-sig") if _is_utf8(raw) else raw.decode("cp1252", "replace")
-    lines = text.splitlines()
-    for separator in ("\t", ";", ","):
-        rows = [[cell.strip().strip('"') for cell in line.split(separator)] for line in lines]
-        first = _first_numeric(rows)
-        if first is not None and len(rows[first]) > 1:
-            return _table(rows, first, path, decimal_comma=separator != ",")
-    raise DataError(
-        "holds no table of numbers",
-        where=str(path),
-        allowed="columns of numbers with tab, semicolon or comma between them, at least two",
-        remedy="export it as ASCII with one time column",
-    )
-
-
-def _is_utf8(raw: bytes) -> bool:
-    try:
-        raw.decode("utf-8")
-    except UnicodeDecodeError:
-        return False
-    return True
-
-
-def _first_numeric(rows: list[list[str]]) -> int | None:
-    """The first row of numbers that is followed by one of the same width, or ends the file."""
-    for at, row in enumerate(rows):
-        if _numeric(row) and (at + 1 == len(rows) or len(rows[at + 1]) == len(row)):
-            return at
-    return None
-
-
-def _numeric(row: list[str]) -> bool:
-    cells = [cell for cell in row if cell]
-    return bool(cells) and all(_NUMBER.match(cell) for cell in cells)
-
-
-def _table(rows: list[list[str]], first: int, path: Path, *, decimal_comma: bool) -> ForeignTable:
-    width = len(rows[first])
-    # The names stand above the numbers; a line of units between them is none of names.
-    headings = [row for row in rows[:first] if len(row) == width and any(row)]
-    names = headings[0] if headings else [str(number) for number in range(1, width + 1)]
-    values = []
-    for line, row in enumerate(rows[first:], start=first + 1):
-        if not any(row):
-            continue
-        if len(row) != width or not _numeric(row):
-            raise DataError(
-                f"is no row of {width} numbers: {row[:4]}",
-                where=f"{path}:{line}",
-                remedy="remove the line; nothing is repaired silently",
-            )
-        values.append([_value(cell, decimal_comma) for cell in row])
-    return ForeignTable(tuple(names), np.array(values, dtype=float))
-
-
-def _value(cell: str, decimal_comma: bool) -> float:
-    if not cell:
-        return float("nan")
-    return float(cell.replace(",", ".") if decimal_comma else cell)
+OTHERS = frozenset(
+    {
+        *(
+            "V",
+            "mV",
+            "mV/V",
+            "V/V",
+            "A",
+            "mA",
+            "%",
+            "kg",
+            "g",
+            "t",
+            "lb",
+            "lbf",
+            "Pa",
+            "kPa",
+            "bar",
+        ),
+        *("m", "cm", "mm", "µm", "µm/m", "um/m", "°", "°C", "K", "Hz", "h", "d"),
+    }
+)
+"""Units of other things: a column in one of them is not what it is taken for."""
 
 
 @dataclass(frozen=True)
@@ -154,11 +66,17 @@ class ColumnMap:
         UsageError
             It is none, or names no time or no cable.
         """
-        time, cables = None, {}
+        time, cables = None, dict[int, str]()
         for part in text.split(","):
             key, equals, column = (word.strip() for word in part.partition("="))
             if not equals or not column:
                 raise _bad_map(text, f"{part.strip()!r} is no key=column")
+            if key == "time" and time is not None:
+                raise _bad_map(text, "it names the time twice")
+            if key.isdecimal() and int(key) in cables:
+                raise _bad_map(text, f"it names cable {int(key)} twice")
+            if column == time or column in cables.values():
+                raise _bad_map(text, f"the column {column!r} is given twice")
             if key == "time":
                 time = column
             elif key.isdecimal() and 1 <= int(key) <= CABLES:
@@ -168,6 +86,76 @@ class ColumnMap:
         if time is None or not cables:
             raise _bad_map(text, "it names no time" if time is None else "it names no cable")
         return cls(time, cables)
+
+
+def times_s(table: ForeignTable, key: str, where: str) -> Array:
+    """The column of times, shape (rows,), in s.
+
+    Parameters
+    ----------
+    table, key, where
+        Its column, by name or number, and the file's name.
+
+    Raises
+    ------
+    DataError
+        It holds no time, is in another unit, or runs backwards.
+    """
+    times = table.column(key, where) * _factor(table, key, where, TIMES)
+    known = np.flatnonzero(np.isfinite(times))
+    if not len(known):
+        raise DataError(f"the column {key!r} holds no time", where=where)
+    backwards = np.flatnonzero(np.diff(times[known]) < 0.0)
+    if len(backwards):
+        before, row = known[backwards[0]], known[backwards[0] + 1]
+        line = f":{table.lines[row]}" if table.lines else ""
+        raise DataError(
+            f"the time runs backwards: {times[row]:g} s after {times[before]:g} s",
+            where=f"{where}{line}",
+            allowed="rows in the order of their time",
+            remedy="where two measurements follow each other, make a table of each",
+        )
+    return times
+
+
+def forces_n(table: ForeignTable, key: str, where: str) -> Array:
+    """A column of tensions, shape (rows,), in N.
+
+    Raises
+    ------
+    DataError
+        It holds no number, or the table says that it is in the unit of something else.
+    """
+    forces = table.column(key, where) * _factor(table, key, where, FORCES)
+    if not np.isfinite(forces).any():
+        raise DataError(f"the column {key!r} holds no number", where=where)
+    return forces
+
+
+def conversions(table: ForeignTable, columns: "ColumnMap", where: str) -> tuple[str, ...]:
+    """What is in other units than s and N and is converted, in words."""
+    asked = [(columns.time, "s"), *((key, "N") for key in columns.cables.values())]
+    units = [(key, table.unit(key, where), to) for key, to in asked]
+    return tuple(
+        f"{key!r} is in {unit}, and is taken to {to}"
+        for key, unit, to in units
+        if (FORCES if to == "N" else TIMES).get(unit, 1.0) != 1.0
+    )
+
+
+def _factor(table: ForeignTable, key: str, where: str, units: dict[str, float]) -> float:
+    """From what a column is in; where the table does not say, from the first of the units."""
+    unit = table.unit(key, where)
+    if unit in units:
+        return units[unit]
+    if unit in OTHERS or unit in FORCES or unit in TIMES:
+        raise DataError(
+            f"the column {key!r} is in {unit}",
+            where=where,
+            allowed=", ".join(units),
+            remedy="name another column in --map, or export this one in one of these units",
+        )
+    return 1.0
 
 
 def _bad_map(text: str, why: str) -> UsageError:
@@ -207,6 +195,8 @@ class ClockMap:
         if not taps:
             return cls()
         table, video = np.array(taps, dtype=float).T
+        if not (np.isfinite(table) & np.isfinite(video)).all():
+            raise UsageError("--sync names no time", allowed="TABLE=VIDEO, both in s")
         if len(taps) == 1:
             return cls(float(table[0] - video[0]))
         if np.ptp(video) == 0.0:

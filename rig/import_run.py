@@ -23,7 +23,8 @@ from cdpr8.runfolder import (
 )
 from cdpr8.runfolder.video import Image
 from rig.command_columns import Command
-from rig.foreign import ClockMap, ColumnMap, ForeignTable
+from rig.foreign import Array, ClockMap, ColumnMap, conversions, forces_n, times_s
+from rig.foreign_table import ForeignTable
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ def import_run(
     rig, rig_text, rig_file
         The machine, its file's text and name.
     table, columns, where
-        The tensions in N, which columns they are, and the file's name.
+        The tensions, which columns they are, and the file's name. What the table says of its
+        units is believed; where it says nothing they are s and N.
     video
         Copied frame by frame, losslessly; None for tensions only.
     clock
@@ -88,8 +90,9 @@ def import_run(
         The winch controller's log, None where there is none.
     """
     clock = clock or ClockMap()
-    times = table.column(columns.time, where)
-    forces = {cable: table.column(key, where) for cable, key in columns.cables.items()}
+    times = times_s(table, columns.time, where)
+    forces = {cable: forces_n(table, key, where) for cable, key in columns.cables.items()}
+    times, forces = _timed(times, forces)
     origin_s = float(times[0])
     frames = None if video is None else _frames(video, rig.camera.fps if rig.camera else 25.0)
     first = None if frames is None else next(frames)
@@ -105,6 +108,7 @@ def import_run(
         clock_anchor=ClockAnchor(t_s=0.0, wall=wall),
         import_map=f"{where}: {columns.time} -> time, "
         + ", ".join(f"{key} -> cable {cable}" for cable, key in columns.cables.items())
+        + "".join(f"; {words}" for words in conversions(table, columns, where))
         + f"; video: {clock.offset_s:+.6f} s, rate {clock.rate:.9f}",
         command_log=None if command is None else command.description,
         versions=versions(),
@@ -113,7 +117,7 @@ def import_run(
     samples = dict.fromkeys(range(1, 9), 0)
     for row, t_s in enumerate(times):
         for cable, force in forces.items():
-            if np.isfinite(force[row]) and np.isfinite(t_s):
+            if np.isfinite(force[row]):
                 writer.tension.append(
                     {
                         "t_s": float(t_s) - origin_s,
@@ -152,6 +156,12 @@ def import_run(
     )
     writer.stop(stop)
     return stop
+
+
+def _timed(times: Array, forces: dict[int, Array]) -> tuple[Array, dict[int, Array]]:
+    """The rows that have a time."""
+    timed = np.isfinite(times)
+    return times[timed], {cable: force[timed] for cable, force in forces.items()}
 
 
 def _frames(video: Path, fps: float) -> Iterator[tuple[Image, float]]:

@@ -19,6 +19,7 @@ from rig.bus import Bus
 from rig.command_log import CommandLog
 from rig.command_stream import CommandStream
 from rig.ending import Recording, disk_fault, reason, require_empty
+from rig.expected_rate import expected_rates
 from rig.filter_delay import doubts
 from rig.intake import Alarm, Intake
 from rig.machine import Machine, open_machine
@@ -196,6 +197,8 @@ class _Session:
         else:
             self._bus = open_bus(machine.transport, rig, zeros)
             self.stations = self._bus.start()
+        line = machine.transport.line
+        self._tally.expected_per_s = expected_rates(self.stations, rig, line)
         if machine.camera is not None:
             import av  # noqa: F401  # now, not between the start record and the first sample
 

@@ -22,6 +22,8 @@ class Tally:
         Rows of the command log.
     last_event
         The newest event, in words.
+    expected_per_s
+        By cable: how many values a second the line, or the amplifier, can give.
     """
 
     samples: dict[int, int] = field(default_factory=lambda: dict.fromkeys(range(1, CABLES + 1), 0))
@@ -30,6 +32,7 @@ class Tally:
     frames: int = 0
     commands: int = 0
     last_event: str = ""
+    expected_per_s: dict[int, float] = field(default_factory=dict)
 
     def lose(self, what: str, count: int = 1) -> None:
         """Count what was lost."""

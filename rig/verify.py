@@ -2,16 +2,16 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cdpr8 import CABLES
 from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+from rig.finding import Finding, Verdict
 from rig.outcome import REASONS, in_words
 from rig.station import by_cables
+from rig.verify_command import command_log
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,31 +22,6 @@ GAP_INTERVALS = 5.0
 MOST_LOST = 0.01
 MOST_DRIFT_PPM = 200.0
 CLOCK_STEP_S = 0.1
-MOST_LOG_RATE_ERROR = 0.1
-"""A command log that is tied by arrival, over a second or more, is no farther off than this."""
-
-
-class Verdict(StrEnum):
-    """What a check found."""
-
-    OK = "ok"
-    WARN = "warn"
-    FAIL = "FAIL"
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One line of the report.
-
-    Attributes
-    ----------
-    verdict, what, words
-        How it stands, what was looked at, and the figures.
-    """
-
-    verdict: Verdict
-    what: str
-    words: str
 
 
 def verify(run: Run) -> list[Finding]:
@@ -60,7 +35,7 @@ def verify(run: Run) -> list[Finding]:
         *_losses(run),
         *_overloads(run),
         *_frames(run),
-        *_command(run),
+        *command_log(run),
         *_clocks(run),
     ]
 
@@ -78,28 +53,53 @@ def _ending(run: Run) -> Iterator[Finding]:
 
 
 def _cables(run: Run) -> Iterator[Finding]:
+    end_s = _end_s(run)
     for cable in range(1, CABLES + 1):
         times = run.cable_tension(cable)["t_s"].to_numpy(dtype=float)
+        if not len(times) and run.start.import_map is not None:
+            yield Finding(Verdict.WARN, f"cable {cable}", "not in the imported table")
+            continue
         if len(times) < 3:
             yield Finding(Verdict.FAIL, f"cable {cable}", f"{len(times)} good values")
             continue
-        steps = np.diff(times)
-        usual = float(np.median(steps))
+        usual = float(np.median(np.diff(times)))
+        # Silence at the beginning and at the end is missing as well.
+        steps = np.diff(times, prepend=min(0.0, times[0]), append=max(end_s, times[-1]))
         gaps = steps[steps > GAP_INTERVALS * usual]
         stuck = _flagged(run, cable, TensionStatus.STALE)
+        inner = np.diff(times)
         words = (
-            f"{len(times) / (times[-1] - times[0]):.1f}/s, usual interval {1e3 * usual:.2f} ms, "
-            f"jitter {1e3 * float(np.std(steps[steps <= GAP_INTERVALS * usual])):.2f} ms"
+            f"{len(times) / float(steps.sum()):.1f}/s, usual interval {1e3 * usual:.2f} ms, "
+            f"jitter {1e3 * float(np.std(inner[inner <= GAP_INTERVALS * usual])):.2f} ms"
         )
         if len(gaps):
             words += f", gaps: {len(gaps)}, the longest {gaps.max():.3f} s"
+        if steps[-1] > GAP_INTERVALS * usual:
+            words += f": none good from {times[-1]:.3f} s to the end"
         if stuck:
             words += f", stuck values: {stuck}"
-        missing = float(gaps.sum()) / float(times[-1] - times[0])
+        missing = float(gaps.sum()) / float(steps.sum())
         verdict = Verdict.OK
         if len(gaps) or stuck:
             verdict = Verdict.FAIL if missing > MOST_LOST or stuck else Verdict.WARN
         yield Finding(verdict, f"cable {cable}", words)
+
+
+def _end_s(run: Run) -> float:
+    """Until when values were due, in s of the run.
+
+    The stop record comes later than that, by what the streams took to end.
+    """
+    told = run.events[~run.events["kind"].isin(_LAST_WORDS)]
+    ends_s = [float(table["t_s"].max()) for table in (run.tension, told) if len(table)]
+    newest_s = max(ends_s, default=0.0)
+    if run.stop is None or run.stop.reason != "duration":
+        return newest_s
+    return max(newest_s, min(run.stop.t_s, run.start.excitation.duration_s))
+
+
+_LAST_WORDS = (EventKind.INTERRUPTED.value, EventKind.DISK_FULL.value)
+"""Events of the ending."""
 
 
 def _skew(run: Run) -> Iterator[Finding]:
@@ -111,8 +111,12 @@ def _skew(run: Run) -> Iterator[Finding]:
         times = run.cable_tension(cable)["t_s"].to_numpy(dtype=float)
         if len(times) < 3:
             continue
-        after = np.clip(np.searchsorted(times, first), 1, len(times) - 1)
-        nearest = np.minimum(np.abs(times[after] - first), np.abs(times[after - 1] - first))
+        # Of sweeps in which both gave values.
+        both = first[(first >= times[0]) & (first <= times[-1])]
+        if not len(both):
+            continue
+        after = np.clip(np.searchsorted(times, both), 1, len(times) - 1)
+        nearest = np.minimum(np.abs(times[after] - both), np.abs(times[after - 1] - both))
         spread = max(spread, float(np.median(nearest)))
     words = f"values of one sweep lie up to {1e3 * spread:.2f} ms apart; each has its own time"
     if run.start.sweep == "broadcast":
@@ -196,39 +200,14 @@ def _frames(run: Run) -> Iterator[Finding]:
     yield Finding(Verdict.WARN if dropped or repeated else Verdict.OK, "video", words)
 
 
-def _command(run: Run) -> Iterator[Finding]:
-    if run.command is None:
-        return
-    rows = run.command
-    times = np.unique(rows["t_s"].to_numpy(dtype=float))
-    if len(times) < 3:
-        yield Finding(Verdict.WARN, "command", f"{len(rows)} rows of the winch controller")
-        return
-    steps = np.diff(times)
-    words = (
-        f"{len(rows)} rows of {rows['cable'].nunique()} cables, "
-        f"{1.0 / float(np.median(steps)):.1f}/s, the longest gap {steps.max():.3f} s"
-    )
-    late_s = (rows["arrived_s"] - rows["t_s"]).dropna()
-    if len(late_s):
-        words += f", noticed up to {1e3 * float(late_s.max()):.0f} ms late"
-    lost = {} if run.stop is None else run.stop.lost
-    timed = rows[["log_s", "arrived_s"]].dropna().to_numpy(dtype=float)
-    if len(timed) > 2 and np.ptp(timed[:, 0]) > 0.0 and np.ptp(timed[:, 1]) > 1.0:
-        rate = float(np.ptp(timed[:, 0]) / np.ptp(timed[:, 1]))
-        if abs(rate - 1.0) > MOST_LOG_RATE_ERROR:
-            words += f"; its clock runs {rate:.4g} times as fast as the run's: is it in s?"
-            yield Finding(Verdict.FAIL, "command", words)
-            return
-    unread, gone = lost.get("command_line", 0), lost.get("command_log_lost", 0)
-    if unread or gone:
-        words += f", {unread} lines not understood, {gone} times gone"
-    yield Finding(Verdict.WARN if unread or gone else Verdict.OK, "command", words)
-
-
 def _clocks(run: Run) -> Iterator[Finding]:
     anchors = [(run.start.clock_anchor.t_s, run.start.clock_anchor.wall.timestamp())]
-    anchors += list(_anchors(run.events))
+    noted, unreadable = _anchors(run.events)
+    anchors += noted
+    if unreadable:
+        yield Finding(
+            Verdict.WARN, "files", f"events.csv: a clock_anchor is no date: {unreadable[0]!r}"
+        )
     if run.stop is not None:
         anchors.append((run.stop.clock_anchor.t_s, run.stop.clock_anchor.wall.timestamp()))
     run_s, wall_s = np.array(anchors).T
@@ -245,14 +224,19 @@ def _clocks(run: Run) -> Iterator[Finding]:
         yield Finding(Verdict.OK, "clock", "no step (a run of 60 s also tells the drift)")
 
 
-def _anchors(events: "pd.DataFrame") -> Iterator[tuple[float, float]]:
+def _anchors(events: "pd.DataFrame") -> tuple[list[tuple[float, float]], list[str]]:
+    """Times of the run with their wall times in s, and what stands where a date should."""
     from datetime import datetime
 
-    if not len(events):
-        return
-    rows = events[events["kind"] == EventKind.CLOCK_ANCHOR.value]
-    for t_s, words in zip(rows["t_s"], rows["detail"], strict=True):
-        yield float(t_s), datetime.fromisoformat(str(words)).timestamp()
+    found, unreadable = [], []
+    if len(events):
+        rows = events[events["kind"] == EventKind.CLOCK_ANCHOR.value]
+        for t_s, words in zip(rows["t_s"], rows["detail"], strict=True):
+            try:
+                found.append((float(t_s), datetime.fromisoformat(str(words)).timestamp()))
+            except ValueError:
+                unreadable.append(str(words))
+    return found, unreadable
 
 
 def _flagged(run: Run, cable: int, bits: TensionStatus) -> int:

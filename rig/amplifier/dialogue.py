@@ -8,7 +8,8 @@ is not believed before a longer silence and the same question again.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from cdpr8.clock import Clock
 from cdpr8.errors import DeviceError
@@ -30,6 +31,10 @@ as long again, and the rest is for a computer that stands still.
 """
 
 TRIES = 3
+
+PATIENT_TRIES = 8
+"""Of one that has answered before, while nothing else waits: a computer may stand still often."""
+
 LONGEST_ANSWER = 64
 
 
@@ -69,6 +74,16 @@ class Dialogue:
         self.transport = transport
         self._unused = bytearray()
         self._late_until_s = -math.inf
+        self._tries = TRIES
+
+    @contextmanager
+    def patiently(self) -> Iterator[None]:
+        """Meanwhile ask `PATIENT_TRIES` times where no other number is named."""
+        self._tries = PATIENT_TRIES
+        try:
+            yield
+        finally:
+            self._tries = TRIES
 
     @property
     def clock(self) -> Clock:
@@ -100,7 +115,7 @@ class Dialogue:
         request: bytes,
         fits: Callable[[bytes], bool] = message.is_line,
         *,
-        tries: int = TRIES,
+        tries: int | None = None,
         margin_s: float = MARGIN_S,
     ) -> bytes:
         """Send one request and return its answer with the line end.
@@ -112,7 +127,8 @@ class Dialogue:
         fits
             Whether a line can be an answer to this request.
         tries
-            How often it is asked at most, where no answer comes.
+            How often it is asked at most, where no answer comes; None takes `TRIES`, or more where
+            it is asked `patiently`.
         margin_s
             How much longer than documented an answer may take.
 
@@ -122,7 +138,7 @@ class Dialogue:
             Nothing whole came, or nothing that fits.
         """
         raw = b""
-        for attempt in range(tries):
+        for attempt in range(tries or self._tries):
             if attempt:
                 self.settle()
             raw, whole = self._exchange(request, margin_s)

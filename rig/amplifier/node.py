@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from cdpr8.errors import DeviceError
 from rig.amplifier import message, own_scaling
-from rig.amplifier.dialogue import TRIES, Dialogue
+from rig.amplifier.dialogue import Dialogue
 from rig.amplifier.profile import Identity
 
 PASSWORD = "AED"
@@ -89,8 +89,8 @@ class NodeClient:
         self._dialogue = dialogue
         self.address = address
 
-    def identify(self, *, tries: int = TRIES) -> Identity:
-        """Select the node and read who it is, asking `tries` times at most.
+    def identify(self, *, tries: int | None = None) -> Identity:
+        """Select the node and read who it is, asking `tries` times at most (`Dialogue.ask`).
 
         Raises
         ------

@@ -66,11 +66,15 @@ def _probe(
     dialogue.settle()
     candidates = [FrameFormat.of_output_format(cof, csm, crlf) for crlf in (True, False)]
     # The first answer is taken to its end in silence, which tells the length; the others quickly.
-    raws = [_value(dialogue, address, LONGEST_FRAME, SETTLE_S, wait_s)]
-    if not raws[0]:
-        return [], raws, dialogue.hush(LATE_S)
-    more = VALUES - 1 if not wait_s else max(1, min(VALUES - 1, int(LONGEST_PROBE_S / wait_s)))
     missed = 0
+    raws = [_value(dialogue, address, LONGEST_FRAME, SETTLE_S, wait_s)]
+    while not raws[0]:
+        late = dialogue.hush(LATE_S)
+        if missed == MISSED:
+            return [], raws, late
+        missed += 1
+        raws = [_value(dialogue, address, LONGEST_FRAME, SETTLE_S, wait_s)]
+    more = VALUES - 1 if not wait_s else max(1, min(VALUES - 1, int(LONGEST_PROBE_S / wait_s)))
     while len(raws) <= more:
         raw = _value(dialogue, address, len(raws[0]), 0.0, wait_s)
         if len(raw) < len(raws[0]) and missed < MISSED:

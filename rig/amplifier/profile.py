@@ -128,7 +128,8 @@ def profile_of(identity: Identity) -> Profile:
         if any(re.match(pattern, identity.type) for pattern in profile.types):
             return profile
     raise DeviceError(
-        f"the amplifier is a {identity.type!r}, of which no dialect is known",
+        f"the amplifier with serial number {identity.serial_number} is a {identity.type!r}, "
+        "of which no dialect is known",
         allowed=", ".join(profile.name for profile in PROFILES),
         remedy="add a Profile in rig/amplifier/profile.py from its manual; nothing is assumed",
     )

@@ -198,7 +198,8 @@ class StreamPort:
         identity = node.identify()
         check_identity(self._rig, self._cable, self._amplifier, identity, self.transport.name)
         profile = profile_of(identity)
-        state = node.configure(self._settings)
+        with self._dialogue.patiently():
+            state = node.configure(self._settings)
         period_s = profile.period_s(self._settings.icr)
         format_ = self._probe(period_s)
         return Station(

@@ -300,6 +300,10 @@ def _not_opened(path: str, line: LineSettings, error: Exception) -> DeviceError:
         what = f"port {path!r} is in use by another program"
     elif code == 13:
         what = f"port {path!r} may not be opened by this user"
+    elif not path:
+        what = "[bus] port names no port"
+    elif code in (errno.ENOTTY, errno.EISDIR, errno.ENOTDIR) or Path(path).is_file():
+        what = f"{path!r} is no serial port"
     else:
         what = f"port {path!r} cannot be opened at {line}: {error}"
     remedy = 'correct [bus] port in the rig file; port = "simulated" needs no hardware'

@@ -201,6 +201,17 @@ def test_a_node_that_stays_silent_is_asked_three_times() -> None:
     assert script.over
 
 
+def test_one_that_has_answered_is_asked_more_often_before_a_run() -> None:
+    # A computer that stands still again and again is not an amplifier that is gone.
+    silence = [(b"COF?;", b""), (b";", b"")] * 6
+    # After silence an answer is not believed before the question was put again.
+    script = Conversation([*silence, *[(b"COF?;", b"009\r\n")] * 2])
+    dialogue = Dialogue(script)
+    with dialogue.patiently():
+        assert dialogue.ask(b"COF?;") == b"009\r\n"
+    assert script.over
+
+
 @pytest.mark.parametrize(
     ("answer", "type_", "profile"),
     [
@@ -217,7 +228,7 @@ def test_identities_are_read_leniently(answer: bytes, type_: str, profile: objec
 
 
 def test_nothing_is_assumed_of_an_unknown_type() -> None:
-    with pytest.raises(DeviceError, match="'WE2107', of which no dialect is known"):
+    with pytest.raises(DeviceError, match="number 1234567 is a 'WE2107', of which no dialect"):
         profile_of(Identity.parse(b'HBM,"WE2107         ","1234567",P61\r\n'))
     with pytest.raises(DeviceError, match="allowed: four parts"):
         Identity.parse(b"H\x00\xff\r\n")
@@ -240,10 +251,10 @@ def test_values_that_fit_no_format_are_refused() -> None:
         probe_format(Dialogue(script), 1, 24, 0)
 
 
-def test_a_probe_whose_first_answer_stays_away_is_made_again() -> None:
+def test_a_probe_whose_first_answers_stay_away_goes_on_asking() -> None:
     # Values of no length are not asked for: a serial port that gives none seems to be gone.
-    silence = [(b";", b""), (b"S01;", b"")]
-    values = [(b";", b""), *[(b"S01;", b"\x00\x27\x10\x00\r\n")] * 16, (b";", b"")]
+    silence = [(b";", b""), *[(b"S01;", b"")] * 3]
+    values = [*[(b"S01;", b"\x00\x27\x10\x00\r\n")] * 16, (b";", b"")]
     script = Conversation(silence + values)
     assert probe_format(Dialogue(script), 1, 24, 0).crlf
     assert script.over

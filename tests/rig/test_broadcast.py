@@ -25,6 +25,7 @@ from cdpr8.runfolder import load_run
 from rig.amplifier import message
 from rig.amplifier.frame import BadFrameError
 from rig.broadcast import BroadcastBus, open_bus
+from rig.finding import Verdict
 from rig.intake import Intake
 from rig.sampler import Sampler
 from rig.scan import scan
@@ -34,7 +35,7 @@ from rig.simulated.signal import NodeSignal
 from rig.streams import BusStream, Span
 from rig.tally import Tally
 from rig.transport import MemoryTransport
-from rig.verify import Verdict, verify
+from rig.verify import verify
 
 NOTE = {9600: 9.6, 19200: 19.0, 38400: 36.8, 57600: 53.6, 115200: 98.3}
 """Sweeps a second with a wait of 1.67 ms (protocol note, section 9): output rate 1 of a FIT."""

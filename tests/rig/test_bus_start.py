@@ -1,7 +1,7 @@
 """The bus at its start: every node identified and set, and what does not fit refused by name."""
 
 import pytest
-from rig_stand_ins import simulated_line, with_bus
+from rig_stand_ins import HeldUp, simulated_line, with_bus
 
 from cdpr8.errors import DeviceError, RigFileError
 from cdpr8.rigfile import Rig
@@ -20,6 +20,23 @@ def test_all_nodes_are_identified_set_and_read_back(rig: Rig) -> None:
                 assert node.settings[mnemonic] == int(answer)
         assert node.measuring
         assert (node.settings["TAS"], node.settings["ZTR"], node.settings["ASF"]) == (1, 0, 0)
+
+
+def test_a_computer_that_stands_still_now_and_then_does_not_keep_a_bus_from_starting(
+    rig: Rig,
+) -> None:
+    _, inner = simulated_line(rig)
+    held = 0
+
+    def held_s(request: bytes) -> float:
+        # The first three answers of each amplifier's probe come 60 ms late.
+        nonlocal held
+        held += request.startswith(b"S0")
+        return 0.06 if request.startswith(b"S0") and held % 19 < 3 else 0.0
+
+    stations = Bus(HeldUp(inner, held_s), rig).start()
+    assert {station.format.length for station in stations} == {6}
+    assert held > 8 * 16
 
 
 def test_a_missing_amplifier_is_named(rig: Rig) -> None:

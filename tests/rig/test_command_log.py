@@ -3,7 +3,6 @@
 import json
 import socket
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig_stand_ins import WavePlatform, at_origin, motion, record_virtually, rig_text, virtual_clock
+from slow_motion import SlowMotion, slowed
 
-from cdpr8.clock import RealClock
 from cdpr8.errors import DataError, DeviceError, UsageError
 from cdpr8.rigfile import Rig
 from cdpr8.runfolder import (
@@ -34,26 +33,34 @@ from rig.command_columns import QUANTITIES, CommandColumns, LineReader
 from rig.command_log import CommandLog, open_command_log
 from rig.command_stream import CommandStream
 from rig.ending import Recording
+from rig.finding import Verdict
 from rig.lines import CommandLine
 from rig.recorder import record
 from rig.scribe import DirectScribe
 from rig.simulated.rig import assemble
 from rig.streams import Span
 from rig.tally import Tally
-from rig.verify import Verdict, verify
+from rig.verify import verify
 
 MAP = "time=t,1=L1,2=L2,2.measured_deg=E2"
 
 
+Act = Callable[[Callable[[float], None]], None]
+"""Writes a log; given what waits until a time of the run."""
+
+
 def recorded(
-    rig: Rig, folder: Path, log: CommandLog, seconds: float, act: Callable[[float], None]
+    rig: Rig, folder: Path, log: CommandLog, seconds: float, act: Act
 ) -> tuple[Recording, Run]:
     """A recording of `seconds`, while `act` writes a log on a thread of its own."""
-    clock = RealClock()
-    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+    clock = SlowMotion()
+    machine = slowed(assemble(rig, WavePlatform(), None, clock, seed=1), clock)
 
     def act_beside(origin_s: float) -> None:
-        threading.Thread(target=act, args=(origin_s,), daemon=True).start()
+        def until(t_s: float) -> None:
+            clock.sleep_until(origin_s + t_s)
+
+        threading.Thread(target=act, args=(until,), daemon=True).start()
 
     at_origin(machine, act_beside)
     recording = record(
@@ -73,10 +80,10 @@ def line(number: int, ahead_s: float) -> str:
     return f"{ahead_s + number / 100:.3f};{2.0 + number / 1000:.4f};2.5;{number}\n"
 
 
-def writing(write: Callable[[str], None], count: int) -> Callable[[float], None]:
-    def act(origin_s: float) -> None:
+def writing(write: Callable[[str], None], count: int) -> Act:
+    def act(until: Callable[[float], None]) -> None:
         for number in range(count):
-            time.sleep(max(0.0, origin_s + number / 100 - time.monotonic_ns() * 1e-9))
+            until(number / 100)
             write(line(number, 5000.0))
 
     return act
@@ -110,8 +117,8 @@ def test_a_growing_file_is_recorded_and_kept_as_it_came(rig: Rig, tmp_path: Path
         file.write(text)
         file.flush()
 
-    def act(origin_s: float) -> None:
-        writing(write, 60)(origin_s)
+    def act(until: Callable[[float], None]) -> None:
+        writing(write, 60)(until)
         write("trip of the safety relay\n")
 
     recording, run = recorded(rig, tmp_path / "run", log, 1.0, act)
@@ -135,10 +142,10 @@ def test_lines_over_tcp_are_recorded_and_a_lost_connection_is_told(
     server = socket.create_server(("127.0.0.1", 0))
     log = open_command_log(f"tcp://127.0.0.1:{server.getsockname()[1]}", MAP.replace("t,", "1,", 1))
 
-    def act(origin_s: float) -> None:
+    def act(until: Callable[[float], None]) -> None:
         connection, _ = server.accept()
         connection.sendall(b"t;L1;L2;E2\r\n")
-        writing(lambda text: connection.sendall(text.encode()), 40)(origin_s)
+        writing(lambda text: connection.sendall(text.encode()), 40)(until)
         connection.close()
 
     recording, run = recorded(rig, tmp_path / "run", log, 0.8, act)
@@ -350,3 +357,17 @@ def test_a_log_whose_time_is_not_in_seconds_fails_its_check(rig: Rig, tmp_path: 
     (found,) = (each for each in verify(load_run(tmp_path / "run")) if each.what == "command")
     assert found.verdict is Verdict.FAIL
     assert "its clock runs 1000 times as fast as the run's: is it in s?" in found.words
+
+
+def test_what_the_log_held_before_the_run_began_makes_its_clock_not_run_fast(
+    rig: Rig, tmp_path: Path
+) -> None:
+    record_virtually(rig, tmp_path / "run", 3.0, camera=False)
+    # Three seconds of it were written while the amplifiers were being set up.
+    rows = [f"{n / 10},1,2.0,,,,{100 + n / 10},{max(0.0, n / 10)}" for n in range(-30, 30)]
+    heading = ",".join(column.name for column in COMMAND.columns)
+    (tmp_path / "run" / "command.csv").write_text("\n".join([heading, *rows, ""]))
+    (found,) = (each for each in verify(load_run(tmp_path / "run")) if each.what == "command")
+    assert found.verdict is Verdict.OK
+    assert "60 rows of 1 cables, 10.0/s" in found.words
+    assert "noticed up to 0 ms late" in found.words

@@ -10,7 +10,8 @@ from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 from cdpr8.rigfile.load import parse_rig
 from cdpr8.runfolder import Run, load_run
-from rig.verify import Verdict, verify
+from rig.finding import Verdict
+from rig.verify import verify
 
 Array = np.ndarray
 

@@ -2,15 +2,17 @@
 
 from pathlib import Path
 
+import av
 import numpy as np
 import pytest
 
 from cdpr8.errors import DataError, UsageError
 from cdpr8.rigfile import Rig
-from cdpr8.runfolder import EventKind, VideoWriter, load_run
+from cdpr8.runfolder import EventKind, load_run
 from cdpr8.terminal import run_app
 from rig.command import app
-from rig.foreign import ClockMap, ColumnMap, read_foreign_table
+from rig.foreign import ClockMap, ColumnMap
+from rig.foreign_table import read_foreign_table
 from rig.verify import verify
 
 pytestmark = pytest.mark.usefixtures("here")
@@ -31,15 +33,17 @@ def test_a_table_of_catman_and_an_avi_become_a_run(
     rig: Rig, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (here / "test.asc").write_text(CATMAN, encoding="cp1252")
-    writer = VideoWriter(here / "test.avi.mkv", 32, 24, 16.0)
     rng = np.random.default_rng(1)
-    picture = rng.integers(0, 255, (24, 32), dtype=np.uint8)
-    for number in range(8):
-        if number != 5:  # one picture comes twice
-            picture = rng.integers(0, 255, (24, 32), dtype=np.uint8)
-        writer.write(picture, number / 16)
-    writer.close()
-    arguments = ["import", "--video", "test.avi.mkv", "--tension", "test.asc", "--map"]
+    with av.open(str(here / "test.avi"), "w") as avi:
+        stream = avi.add_stream("ffv1", rate=16)
+        stream.width, stream.height, stream.pix_fmt = 32, 24, "gray"
+        picture = rng.integers(0, 255, (24, 32), dtype=np.uint8)
+        for number in range(8):
+            if number != 5:  # one picture comes twice
+                picture = rng.integers(0, 255, (24, 32), dtype=np.uint8)
+            avi.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="gray")))
+        avi.mux(stream.encode())
+    arguments = ["import", "--video", "test.avi", "--tension", "test.asc", "--map"]
     arguments += ["time=Zeit,1=Kraft 1,2=3", "--sync", "0.5=0.25", "--sync", "0.75=0.50"]
     assert run_app(app, [*arguments, "--name", "other"]) == 0
     assert "6 values, 8 frames" in capsys.readouterr().out
@@ -62,6 +66,11 @@ def test_a_table_of_catman_and_an_avi_become_a_run(
         ("t;F\n0,5;1,5\n1;2\n", ("t", "F"), [0.5, 1.5]),
         ("t,F\n0.5,1.5\n1,2\n", ("t", "F"), [0.5, 1.5]),
         ("0.5\t1.5\n1\t2\n", ("1", "2"), [0.5, 1.5]),
+        ("t F\n0.5 1.5\n1  2\n", ("t", "F"), [0.5, 1.5]),
+        ("t\tF\n0,5\t1,5\t\n1\t2\t\n", ("t", "F"), [0.5, 1.5]),  # a separator ends the lines
+        ("t\tF\t\n0,5\t1,5\t\n1\t\t\n", ("t", "F"), [0.5, 1.5]),
+        ("t;F\n05.03.2024 10:00:00,5;1,5\n05.03.2024 10:00:01;2\n", ("t", "F"), [0.0, 1.5]),
+        ("t,F\n10:00:00,1.5\n10:00:01.25,2\n", ("t", "F"), [0.0, 1.5]),
     ],
 )
 def test_tables_are_read_whatever_stands_between(
@@ -71,6 +80,59 @@ def test_tables_are_read_whatever_stands_between(
     table = read_foreign_table(here / "t.txt")
     assert table.names == names
     assert table.values[0].tolist() == row
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig", "cp1252"])
+def test_a_table_is_read_in_whatever_encoding(here: Path, encoding: str) -> None:
+    (here / "t.txt").write_text("Zeit\tKraft größer\n0,5\t1,5\n1\tNaN\n", encoding=encoding)
+    table = read_foreign_table(here / "t.txt")
+    assert table.names == ("Zeit", "Kraft größer")
+    assert table.values[0].tolist() == [0.5, 1.5]
+    assert np.isnan(table.values[1, 1])
+
+
+def imported(here: Path, text: str, columns: str = "time=t,1=F") -> int:
+    (here / "t.txt").write_text(text)
+    return run_app(app, ["import", "--tension", "t.txt", "--map", columns, "--name", "run"])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t;F\nms;kN\n500;0,0125\n750;0,5\n",
+        "t [ms];F (kN)\n500;0,0125\n750;0,5\n",
+    ],
+)
+def test_units_that_the_table_names_are_converted_and_said(
+    here: Path, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert imported(here, text) == 0
+    assert "the column 'F' is in kN, and is taken to N" in capsys.readouterr().err
+    run = load_run(here / "runs" / "run")
+    assert run.tension["t_s"].tolist() == [0.0, 0.25]
+    assert run.tension["tension_n"].tolist() == [12.5, 500.0]
+    assert "'t' is in ms, and is taken to s" in run.start.import_map
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        ("t;F\ns;mV/V\n0;1\n1;2\n", 3, "t.txt: the column 'F' is in mV/V"),
+        ("t;F\nN;N\n0;1\n1;2\n", 3, "t.txt: the column 't' is in N"),
+        ("t;F\n0;1\n1;2\n\n0,5;3\n", 3, "t.txt:5: the time runs backwards: 0.5 s after 1 s"),
+        ("t;F\n;1\n;2\n", 3, "the column 't' holds no time"),
+        ("t;F\n0;NaN\n1;\n", 3, "the column 'F' holds no number"),
+        ("t,F\n0,00,1,25\n0,01,1,30\n", 3, "commas between its columns and in its numbers"),
+        ("0,00,1,25\n0,01,1,30\n", 3, "commas between its columns and in its numbers"),
+        ("t;F 1;F 2\n0;1;2\n1;2;3\n", 2, "names the column 'F', 2 columns begin so"),
+    ],
+)
+def test_a_table_that_reads_otherwise_than_it_is_meant_is_refused(
+    here: Path, text: str, code: int, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert imported(here, text) == code
+    assert message in capsys.readouterr().err
+    assert not (here / "runs" / "run").exists()
 
 
 @pytest.mark.parametrize(
@@ -83,7 +145,13 @@ def test_what_is_no_table_is_refused(here: Path, text: str, message: str) -> Non
         read_foreign_table(here / "t.txt")
 
 
-@pytest.mark.parametrize("text", ["1=a", "time=t", "time=t,9=a", "time", "time=t,x=a"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("1=a", "time=t", "time=t,9=a", "time", "time=t,x=a"),
+        *("time=t,time=u,1=a", "time=t,1=a,1=b", "time=t,1=a,2=a", "time=t,1=t"),
+    ],
+)
 def test_maps_that_map_nothing_are_refused(text: str) -> None:
     with pytest.raises(UsageError, match="allowed: time=COLUMN"):
         ColumnMap.parse(text)
@@ -93,6 +161,8 @@ def test_two_clocks_are_matched_by_two_events() -> None:
     clock = ClockMap.of([(2.31, 1.04), (58.77, 57.49)])
     assert clock.to_table_s(1.04) == pytest.approx(2.31)
     assert clock.to_table_s(57.49) == pytest.approx(58.77)
+    with pytest.raises(UsageError, match="names no time"):
+        ClockMap.of([(float("nan"), 1.0)])
     with pytest.raises(UsageError, match="off the table's"):
         ClockMap.of([(2.0, 1.0), (58.0, 50.0)])
 

@@ -1,6 +1,7 @@
 """What goes wrong around the line: unplugged, echoing, paused, the wall clock stepped."""
 
 import io
+import math
 import os
 import sys
 import threading
@@ -20,13 +21,15 @@ from rig_stand_ins import (
     record_virtually,
     rig_text,
     simulated_line,
+    virtual_clock,
     with_bus,
 )
+from slow_motion import SlowMotion, slowed
 
-from cdpr8.clock import RealClock
+from cdpr8.clock import Clock, RealClock
 from cdpr8.errors import DeviceError
 from cdpr8.rigfile import Rig
-from cdpr8.runfolder import load_run
+from cdpr8.runfolder import Run, load_run
 from cdpr8.terminal import alarm
 from rig.alarm import OverloadAlarm
 from rig.assignment import line_settings
@@ -36,7 +39,10 @@ from rig.recorder import record
 from rig.simulated.bus import SimulatedBus
 from rig.simulated.pseudo_terminal import PseudoTerminal
 from rig.simulated.rig import assemble, simulated_nodes
-from rig.transport import TwoWire, open_serial_port
+from rig.stop import StopRequest
+from rig.tally import Tally
+from rig.transport import LineLostError, MemoryTransport, TwoWire, open_serial_port
+from rig.transport.end import Around
 
 needs_terminals = pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
 
@@ -47,28 +53,99 @@ def rig(rig: Rig, request: pytest.FixtureRequest) -> Rig:
     return with_bus(rig, sweep=request.param)
 
 
-@needs_terminals
+class Adapter(Around):
+    """A line in memory whose adapter is pulled, and plugged in again, at times of the clock."""
+
+    def __init__(self, inner: MemoryTransport) -> None:
+        super().__init__(inner)
+        self.pulled_s = self.plugged_s = math.inf
+
+    def __getattr__(self, name: str) -> object:
+        self._require_there()
+        return getattr(self._inner, name)
+
+    def reopen(self) -> None:
+        self._require_there()
+
+    def _require_there(self) -> None:
+        if self.pulled_s <= self.clock.monotonic_s() < self.plugged_s:
+            raise LineLostError("the port is gone")
+
+
+def assert_back(
+    run: Run, pulled_s: float, plugged_s: float, until_s: float, within_s: float = 2.0
+) -> None:
+    """Lost once and back in time, and every value its own cable's."""
+    lost = run.events[run.events["kind"] == "line_lost"]["t_s"]
+    back = run.events[run.events["kind"] == "line_back"]["t_s"]
+    assert len(lost) == len(back) == run.stop.lost["line_lost"] == 1
+    assert pulled_s <= lost.iloc[0] < pulled_s + 0.5
+    assert plugged_s <= back.iloc[0] < plugged_s + within_s
+    for cable in range(1, 9):
+        rows = run.cable_tension(cable)
+        assert (np.abs(rows["tension_n"] - 5.0 - 2.0 * cable) < 0.04).all()
+        assert rows["t_s"].max() > until_s
+
+
 def test_a_replugged_adapter_is_back_within_two_seconds(rig: Rig, tmp_path: Path) -> None:
-    clock = RealClock()
+    clock = virtual_clock()
+    machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+    adapter = machine.transport = Adapter(machine.transport)
+
+    def pull(origin_s: float) -> None:
+        adapter.pulled_s, adapter.plugged_s = origin_s + 0.7, origin_s + 1.4
+
+    at_origin(machine, pull)
+    recording = record(
+        rig, rig_text(), tmp_path / "run", excitation=motion(4.0), clock=clock, machine=machine
+    )
+    assert recording.fault is None
+    assert_back(load_run(tmp_path / "run"), 0.7, 1.4, until_s=3.9)
+
+
+@needs_terminals
+@pytest.mark.parametrize(
+    ("pace", "within_s"), [(3.0, 20.0), pytest.param(1.0, 2.0, marks=pytest.mark.slow)]
+)
+def test_a_replugged_pseudo_terminal_is_back(
+    rig: Rig,
+    tmp_path: Path,
+    pace: float,
+    within_s: float,
+    record_property: Callable[[str, object], None],
+) -> None:
+    """As above with threads, pyserial and a port that comes back under another name.
+
+    How soon is up to the computer, so the bar is held in real time with the slow tests.
+    """
+    clock, stop = SlowMotion(pace), StopRequest()
     nodes = simulated_nodes(rig, WavePlatform(), clock.monotonic_s(), 1)
     bus = SimulatedBus(nodes, line_settings(rig))
     terminal = PseudoTerminal(bus, clock, tmp_path / "port")
     transport = open_serial_port(terminal.path, bus.line, clock)
-    replugged: list[float] = []
+    plugged: list[float] = []
 
     def begin(origin_s: float) -> None:
         for node in nodes:
             node.signal.begin(origin_s)
 
         def pull() -> None:
-            clock.sleep_until(origin_s + 0.7)
+            clock.sleep_until(origin_s + 0.4)
             terminal.close()
-            clock.sleep_until(origin_s + 1.4)
+            clock.sleep_until(origin_s + 0.8)
+            plugged.append(clock.monotonic_s() - origin_s)
             terminal.plug()
-            replugged.append(clock.monotonic_s() - origin_s)
 
         threading.Thread(target=pull, daemon=True).start()
 
+    def watch(tally: Tally, now_s: float) -> None:
+        # Over once values of all cables come again.
+        if tally.lost.get("line_lost"):
+            seen.append(min(tally.samples.values()))
+            if seen[-1] > seen[0] + 10:
+                stop.request()
+
+    seen: list[int] = []
     machine = Machine(
         transport=transport,
         camera=None,
@@ -78,21 +155,21 @@ def test_a_replugged_adapter_is_back_within_two_seconds(rig: Rig, tmp_path: Path
         close=transport.close,
     )
     recording = record(
-        rig, rig_text(), tmp_path / "run", excitation=motion(3.5), clock=clock, machine=machine
+        rig,
+        rig_text(),
+        tmp_path / "run",
+        excitation=motion(30.0),
+        clock=clock,
+        machine=slowed(machine, clock),
+        watch=watch,
+        stop=stop,
     )
     assert recording.fault is None
     terminal.close()
     run = load_run(tmp_path / "run")
-    lost = run.events[run.events["kind"] == "line_lost"]["t_s"]
-    back = run.events[run.events["kind"] == "line_back"]["t_s"]
-    assert len(lost) == len(back) == 1
-    assert 0.7 <= lost.iloc[0] < 1.2
-    assert back.iloc[0] - replugged[0] < 2.0
-    for cable in range(1, 9):
-        rows = run.cable_tension(cable)
-        assert (np.abs(rows["tension_n"] - 5.0 - 2.0 * cable) < 0.04).all()
-        assert rows["t_s"].max() > 3.2
-    assert recording.stop.lost["line_lost"] == 1
+    back_s = run.events[run.events["kind"] == "line_back"]["t_s"].iloc[0]
+    record_property("back_after_s", float(back_s - plugged[0]))
+    assert_back(run, 0.4, plugged[0], until_s=back_s, within_s=within_s)
 
 
 def test_the_echo_of_a_two_wire_line_is_swallowed(rig: Rig, tmp_path: Path) -> None:
@@ -118,34 +195,49 @@ def test_an_echo_that_is_not_what_was_sent_damages_the_answer(rig: Rig) -> None:
     assert line.read(33, 0.1).damaged
 
 
-def test_a_pause_of_two_seconds_is_said_and_no_time_is_invented(rig: Rig, tmp_path: Path) -> None:
-    clock = RealClock()
-    machine = assemble(rig, WavePlatform(1.0, 1.0), None, clock, seed=1)
+def stand_still_once(machine: Machine, clock: Clock, stand_still: Callable[[], None]) -> None:
+    """Have the recorder's thread stand still after a request, half a second into the run."""
     write, paused = machine.transport.write, []
 
-    def stand_still(data: bytes) -> None:
+    def write_and_stand(data: bytes) -> None:
         write(data)
         if not paused and data == b"S04;" and clock.monotonic_s() > origin[0] + 0.5:
             paused.append(True)
-            time.sleep(2.0)
+            stand_still()
 
     origin: list[float] = []
 
     def note_origin(origin_s: float) -> None:
         origin.append(origin_s)
-        machine.transport.write = stand_still
+        machine.transport.write = write_and_stand
 
     at_origin(machine, note_origin)
-    recording = record(
-        rig, rig_text(), tmp_path / "run", excitation=motion(3.2), clock=clock, machine=machine
-    )
-    run = load_run(tmp_path / "run")
-    assert recording.stop.lost["pause"] == 1
+
+
+def assert_no_time_is_invented(run: Run, moving: WavePlatform) -> None:
+    assert run.stop.lost["pause"] == 1
     assert "pause" in set(run.events["kind"])
     for cable in range(1, 9):
         rows = run.cable_tension(cable)
-        true = WavePlatform(1.0, 1.0).tension_at(cable, rows["t_s"].to_numpy())
+        true = moving.tension_at(cable, rows["t_s"].to_numpy())
         assert np.abs(rows["tension_n"] - true).max() < 0.3  # 20 ms of 6 N/s, and noise
+
+
+def test_a_pause_of_two_seconds_is_said_and_no_time_is_invented(rig: Rig, tmp_path: Path) -> None:
+    clock, moving = virtual_clock(), WavePlatform(1.0, 1.0)
+    machine = assemble(rig, moving, None, clock, seed=1)
+    stand_still_once(machine, clock, lambda: clock.advance(2.0))
+    record(rig, rig_text(), tmp_path / "run", excitation=motion(3.2), clock=clock, machine=machine)
+    assert_no_time_is_invented(load_run(tmp_path / "run"), moving)
+
+
+@pytest.mark.slow
+def test_a_thread_that_really_stands_still_invents_no_time(rig: Rig, tmp_path: Path) -> None:
+    clock, moving = RealClock(), WavePlatform(1.0, 1.0)
+    machine = assemble(rig, moving, None, clock, seed=1)
+    stand_still_once(machine, clock, lambda: time.sleep(2.0))
+    record(rig, rig_text(), tmp_path / "run", excitation=motion(3.2), clock=clock, machine=machine)
+    assert_no_time_is_invented(load_run(tmp_path / "run"), moving)
 
 
 class SteppedClock(RealClock):
@@ -179,24 +271,32 @@ def test_a_stepped_wall_clock_is_noted_and_moves_no_sample(rig: Rig, tmp_path: P
     steps = run.events[run.events["kind"] == "clock_step"]
     assert len(steps) == 1
     assert "+3600." in steps["detail"].iloc[0]
-    assert np.diff(run.cable_tension(1)["t_s"]).max() < 0.3
-    assert run.tension["t_s"].max() < 1.3
+    # An hour is in no sample's time, however busy the computer was.
+    assert np.diff(run.cable_tension(1)["t_s"]).max() < 60.0
+    assert run.tension["t_s"].max() < 60.0
 
 
 def test_a_display_that_stalls_does_not_touch_the_data(rig: Rig, tmp_path: Path) -> None:
-    clock = RealClock()
+    clock, stop = RealClock(), StopRequest()
     machine = assemble(rig, WavePlatform(), None, clock, seed=1)
+
+    def watch(tally: Tally, _: float) -> None:
+        # It stands still until twenty more values of each cable have come meanwhile.
+        enough = min(tally.samples.values()) + 20
+        wait_for(lambda: min(tally.samples.values()) >= enough)
+        stop.request()
+
     recording = record(
         rig,
         rig_text(),
         tmp_path / "run",
-        excitation=motion(1.0),
+        excitation=motion(60.0),
         clock=clock,
         machine=machine,
-        watch=lambda *_: time.sleep(1.5),
+        watch=watch,
+        stop=stop,
     )
-    assert recording.stop.lost.get("pause", 0) == 0
-    assert min(recording.stop.samples.values()) > 40
+    assert recording.stop.reason == "interrupted"
 
 
 def test_two_amplifiers_at_one_address_are_refused(rig: Rig) -> None:
@@ -240,7 +340,7 @@ def test_a_garbage_burst_is_over_within_half_a_second(rig: Rig, tmp_path: Path) 
 
 
 def wait_for(condition: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + 20.0
+    deadline = time.monotonic() + 50.0
     while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.01)
@@ -287,8 +387,6 @@ def test_the_bell_rings_beside_the_live_table(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_an_overload_raises_the_alarm_once(rig: Rig, tmp_path: Path) -> None:
-    from rig_stand_ins import virtual_clock
-
     raised: list[int] = []
     clock = virtual_clock()
     machine = assemble(rig, WavePlatform(45.0, 0.5), None, clock, seed=1)

@@ -22,6 +22,7 @@ from rig.amplifier import message
 from rig.amplifier.own_scaling import concerns, deviations
 from rig.bus import Bus
 from rig.command import app
+from rig.finding import Verdict
 from rig.recorder import record
 from rig.scan import scan
 from rig.simulated import rig as simulated_rig
@@ -29,7 +30,7 @@ from rig.simulated.conversion import FACTORY_SPAN, converted
 from rig.simulated.node import SimulatedNode
 from rig.simulated.registers import factory_settings
 from rig.simulated.rig import assemble
-from rig.verify import Verdict, verify
+from rig.verify import verify
 
 OF_NODE_3 = ';S03;SPW"AED";'
 

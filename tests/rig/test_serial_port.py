@@ -50,7 +50,7 @@ def test_all_byte_values_pass_both_ways(pty: tuple[int, str]) -> None:
     transport.write(every)
     assert os.read(master, 1000) == every
     os.write(master, every)
-    received = transport.read(256, RealClock().monotonic_s() + 1.0)
+    received = transport.read(256, RealClock().monotonic_s() + 30.0)
     assert received.data == every
     assert not received.damaged
     transport.close()
@@ -63,7 +63,7 @@ def test_a_read_ends_at_its_deadline_with_what_came(pty: tuple[int, str]) -> Non
     os.write(master, b"abc")
     began = clock.monotonic_s()
     assert transport.read(6, began + 0.05).data == b"abc"
-    assert 0.05 <= clock.monotonic_s() - began < 0.5
+    assert 0.05 <= clock.monotonic_s() - began < 5.0  # on whatever computer
     os.write(master, b"late")
     assert transport.drain(0.02) == b"late"
     assert transport.discard() == b""
@@ -76,9 +76,9 @@ def test_what_came_behind_an_answer_is_kept_for_who_reads_next(pty: tuple[int, s
     transport = open_serial_port(path, LINE, clock)
     for after in ("read", "take", "discard"):
         os.write(master, b"answerstray")
-        assert transport.read(6, clock.monotonic_s() + 1.0).data == b"answer"
+        assert transport.read(6, clock.monotonic_s() + 30.0).data == b"answer"
         if after == "read":
-            assert transport.read(5, clock.monotonic_s() + 1.0).data == b"stray"
+            assert transport.read(5, clock.monotonic_s() + 30.0).data == b"stray"
         elif after == "take":
             assert transport.take().data == b"stray"
         else:
@@ -127,6 +127,19 @@ def test_a_missing_port_is_told_with_those_there_are() -> None:
     assert told.value.exit_code == ExitCode.DEVICE
     assert "no serial port '/dev/ttyNOSUCH0'" in told.value.sentence()
     assert "ports here:" in told.value.sentence()
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("notes.txt", "notes.txt' is no serial port"), (".", "' is no serial port"), ("", "no port")],
+)
+def test_what_is_no_port_is_called_so(tmp_path: Path, name: str, message: str) -> None:
+    (tmp_path / "notes.txt").write_text("not a device")
+    path = str(tmp_path / name) if name else ""
+    with pytest.raises(DeviceError, match="ports here:") as told:
+        open_serial_port(path, LINE, RealClock())
+    assert message in told.value.what
+    assert "Errno" not in told.value.sentence()
 
 
 def test_a_name_that_vanishes_while_it_is_read_is_a_port_that_is_not_there(

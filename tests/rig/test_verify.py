@@ -10,7 +10,8 @@ from cdpr8.rigfile import Rig
 from cdpr8.runfolder import load_run
 from cdpr8.terminal import run_app
 from rig.command import app
-from rig.verify import Verdict, verify
+from rig.finding import Verdict
+from rig.verify import verify
 
 pytestmark = pytest.mark.usefixtures("here")
 
@@ -38,6 +39,34 @@ def test_an_overloaded_run_fails_its_check(
     assert "not in order: overload" in told.err
     assert run_app(app, ["verify", "run", "--json"]) == 1
     assert json.loads(capsys.readouterr().out)[0]["verdict"] == "ok"
+
+
+def test_a_cable_that_fell_silent_for_good_fails_and_does_not_stretch_the_skew(
+    rig: Rig, here: Path
+) -> None:
+    record_virtually(rig, here / "run", 2.0, camera=False)
+    path = here / "run" / "tension.csv"
+    heading, *rows = path.read_text().splitlines(keepends=True)
+    kept = [row for row in rows if row.split(",")[1] != "3" or float(row.split(",")[0]) < 0.5]
+    path.write_text("".join([heading, *kept]))
+    found = {each.what: (each.verdict, each.words) for each in verify(load_run(here / "run"))}
+    verdict, words = found["cable 3"]
+    assert verdict is Verdict.FAIL
+    assert words.startswith("3")  # about 131/s for a quarter of the time
+    assert "none good from 0.49" in words
+    assert words.endswith("to the end")
+    assert found["cable 4"][0] is Verdict.OK
+    assert "none good" not in found["cable 4"][1]
+    assert found["skew"][1].startswith("values of one sweep lie up to 3.")
+
+
+def test_a_damaged_clock_anchor_is_told_and_the_rest_is_verified(rig: Rig, here: Path) -> None:
+    record_virtually(rig, here / "run", 1.0, camera=False)
+    path = here / "run" / "events.csv"
+    path.write_text(path.read_text().replace("2024-01-01T", "2024-01-.1T"))
+    found = [each for each in verify(load_run(here / "run")) if each.verdict is Verdict.WARN]
+    assert [each.what for each in found] == ["files"]
+    assert "a clock_anchor is no date: '2024-01-.1T" in found[0].words
 
 
 def test_an_interrupted_run_is_said_to_be_one(rig: Rig, here: Path) -> None:

@@ -28,12 +28,15 @@ def recorded(take, packaged_text, tmp_path):
 
 def test_frames_come_while_the_file_grows(recorded, tmp_path):
     data = (recorded / "video.mkv").read_bytes()
-    path, done = tmp_path / "growing.mkv", threading.Event()
+    path, done, most = tmp_path / "growing.mkv", threading.Event(), 3 * len(data) // 4
+    enough = threading.Event()
 
     def record():
         with path.open("wb") as file:
-            for start in range(0, len(data), 40_000):
-                file.write(data[start : start + 40_000])
+            for start, end in ((0, most // 3), (most // 3, most), (most, len(data))):
+                if end == len(data):
+                    enough.wait(60.0)  # the rest is written once frames of the beginning came
+                file.write(data[start:end])
                 file.flush()
                 time.sleep(0.02)
         done.set()
@@ -44,6 +47,8 @@ def test_frames_come_while_the_file_grows(recorded, tmp_path):
     for image, _ in read_growing(path, done.is_set):
         early += not done.is_set()
         shapes.append(image.shape)
+        if len(shapes) > 4:
+            enough.set()
     writer.join()
     assert shapes == [(240, 240)] * 24
     assert early > 4, "frames must come before the recording is over"
