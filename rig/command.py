@@ -29,7 +29,6 @@ app = typer.Typer(
 )
 main = entry(app)
 
-RUNS = Path("runs")
 LARGEST_SEED = 2**63 - 1
 
 
@@ -117,6 +116,7 @@ def record_command(
     from rig.live import live_view
     from rig.outcome import show, summary
     from rig.recorder import record
+    from rig.run_name import named_run
     from rig.slack import slack_warning
     from rig.stop import StopRequest
     from rig.taps import listen_for_taps
@@ -137,7 +137,7 @@ def record_command(
     if (warning := slack_warning(machine, excitation)) is not None:
         note(f"warning: {warning}")
     taken = _zeros(zeros, rig_path)
-    folder = out or RUNS / (name or now.astimezone().strftime("%Y-%m-%dT%H-%M-%S"))
+    folder = out or named_run(name or now.astimezone().strftime("%Y-%m-%dT%H-%M-%S"))
     _announce(machine)
     note("setting up the amplifiers ...")
 
@@ -259,7 +259,7 @@ def _excitation(
     if frequency is not None:
         update["frequency_hz"] = frequency
     if duration is not None:
-        rests_s = motion.start_s + motion.rest_s
+        rests_s = motion.duration_s - motion.motion_s
         motion_s = round(duration - rests_s, 9)
         least_s = 2.0 * motion.ramp_s
         if motion_s <= 0.0 or motion_s < least_s:

@@ -29,8 +29,9 @@ def doctor_command(rig: RigOption = None, as_json: JsonOption = False) -> None:
     from cdpr8.rigfile import find_rig_file, load_rig
     from rig.doctor import diagnose
     from rig.finding import Verdict
+    from rig.run_name import RUNS
 
-    found = list(diagnose(load_rig(find_rig_file(rig)), Path("runs")))
+    found = list(diagnose(load_rig(find_rig_file(rig)), RUNS))
     if as_json:
         say_json(
             [

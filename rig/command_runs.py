@@ -102,6 +102,7 @@ def import_command(
     from rig.foreign import ClockMap, ColumnMap, conversions
     from rig.foreign_table import read_foreign_table
     from rig.import_run import import_run
+    from rig.run_name import named_run
 
     path = find_rig_file(rig)
     taps = [_tap(words, "--sync") for words in sync or []]
@@ -109,7 +110,7 @@ def import_command(
     clock = ClockMap.of(taps)
     if video is not None and not taps:
         note("no --sync: the video is taken to start with the table")
-    folder = Path("runs") / name
+    folder = named_run(name)
     rig_text = path.read_text(encoding="utf-8")
     table = read_foreign_table(tension)
     for words in conversions(table, columns, str(tension)):

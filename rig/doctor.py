@@ -96,7 +96,11 @@ def _ports(rig: Rig) -> Iterator[Diagnosis]:
 
 def _latency() -> Iterator[Diagnosis]:
     for timer in sorted(Path("/sys/bus/usb-serial/devices").glob("*/latency_timer")):
-        value = int(timer.read_text())
+        try:
+            value = int(timer.read_text())
+        except (OSError, ValueError):
+            # Unplugged while it was looked at: the port's own line says so.
+            continue
         if value > LATENCY_MS:
             yield Diagnosis(
                 Verdict.WARN,

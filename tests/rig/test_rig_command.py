@@ -120,6 +120,8 @@ def test_a_folder_that_cannot_be_written_is_one_message(
         (["--duration", "2"], "--duration 2 leaves 0 s for the motion"),
         (["--duration", "2.5"], "allowed: at least 3 s"),
         (["--out", "a", "--name", "b"], "both name the run folder"),
+        (["--name", "../a"], "--name '../a' is no name of a folder"),
+        (["--name", ".."], "one name, without /"),
         (["--duration", "-1"], "--duration"),
         (["--amplitude", "90"], "--amplitude"),
     ],
