@@ -197,7 +197,7 @@ def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
 
 def _abreast(single: Sequence[Fitted]) -> list[Fitted]:
     """The likeliest of what the ring tells in straight lines; rivals among them."""
-    least = max(one.log_score for one in single) - ABREAST
+    least = max((one.log_score for one in single), default=0.0) - ABREAST
     return [one for one in single if one.log_score > least][:MOST_ABREAST]
 
 

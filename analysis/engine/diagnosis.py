@@ -13,6 +13,7 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
+from analysis.engine.moved import moved_far
 from analysis.engine.part import records_of
 from analysis.engine.search import Search, search
 from analysis.engine.system import Array, System
@@ -122,13 +123,28 @@ def diagnose(
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)
     aside = len(searched.aside) / len(records_of(system))
-    judgement = judge(searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside)
+    judgement = judge(
+        searched.fitted,
+        candidates,
+        lost=searched.lost,
+        noise=noise,
+        aside=aside,
+        moved=_moved(searched, noise),
+    )
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
     return Diagnosis(
         system, searched.calibrated, findings, searched, judgement, remains, proof, flagged
     )
+
+
+def _moved(searched: Search, noise: float) -> dict[str, float]:
+    """Numbers that moved too far, where with nothing left out they came to the noise."""
+    null = next(one for one in searched.fitted if not one.hypothesis.parts)
+    if not searched.faint or not null.left < noise + REMAINS_ALONE:
+        return {}
+    return moved_far(searched.system.nuisances, null.point.nuisance)
 
 
 def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:

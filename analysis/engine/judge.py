@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from analysis.engine.cause import Cause, cause_of, doubted
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import LOG_ODDS
+from analysis.engine.moved import rise_of
 from analysis.engine.system import Array, Candidate
 
 TEMPER = 2.0
@@ -98,6 +99,7 @@ def judge(
     lost: bool = False,
     noise: float = NOISE,
     aside: float = 0.0,
+    moved: Mapping[str, float] | None = None,
 ) -> Judgement:
     """Weigh the fitted hypotheses.
 
@@ -113,6 +115,9 @@ def judge(
         The squared misfit of a sample that noise leaves, where that is more than `NOISE`.
     aside
         Share of the recordings that did not count, for what is on could not be led through them.
+    moved
+        Numbers that nothing left out has moved too far, and by how many sigmas; None: they were not
+        led to the noise.
     """
     noise = max(noise, NOISE)
     scores = np.array([_plausible_score(one) for one in fitted])
@@ -122,6 +127,10 @@ def judge(
     )
     scores[_idle(fitted, scores, candidates)] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
+    for i, one in enumerate(fitted):
+        if moved and len(one.hypothesis.names) == 1 and one.hypothesis.names[0] in moved:
+            rise = rise_of(moved[one.hypothesis.names[0]], TEMPER_EXACT)
+            scores[i] = max(scores[i], nothing + rise)
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
     least = TEMPER_EXACT if form < EXACT else TEMPER

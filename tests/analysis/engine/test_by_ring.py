@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.by_ring import _bent, _is_hollow
+from analysis.engine.by_ring import _abreast, _bent, _is_hollow
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
@@ -55,3 +55,7 @@ def test_parameters_are_in_a_hollow_where_nothing_promises_to_explain_what_they_
     about = faint(system, nothing, system.candidates)
     _, faintly = faint_search(about, refiner, refiner.candidates)
     assert _is_hollow(system, nothing, faintly) == hollow
+
+
+def test_where_parameters_are_bent_and_the_ring_promises_nothing_lines_are_asked() -> None:
+    assert _abreast([]) == []

@@ -14,8 +14,10 @@ from analysis.engine.judge import (
     judge,
 )
 from analysis.engine.look import look
+from analysis.engine.moved import EVEN, moved_far
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
+from analysis.engine.system import Nuisance
 from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
 
 CANDIDATES = {one.name: one for one in (DAMPING, STEP)}
@@ -130,3 +132,34 @@ def test_of_kin_the_one_that_comes_to_the_noise_is_named_however_much_there_is_t
         (cause,) = judge(found, kin).causes
         assert cause.name == "damping"
         assert (cause.rivals == ()) == alone
+
+
+@pytest.mark.parametrize(("sigmas", "named"), [(2.5, False), (3.5, True), (6.0, True)])
+def test_a_number_that_moved_by_more_than_three_sigmas_is_named_however_many_there_are(
+    refiner: Refiner, sigmas: float, named: bool
+) -> None:
+    exact = {name: replace(one, form_share=0.01) for name, one in CANDIDATES.items()}
+    found = [
+        fitted(refiner, None, -10.0, 1.0),
+        fitted(refiner, state_of(DAMPING, 0.01), -20.0, 1.0),
+    ]
+    assert judge(found, exact).verdict == "none"
+    moved = {"damping": sigmas} if sigmas > EVEN else {}
+    said = judge(found, exact, moved=moved)
+    assert [one.name for one in said.causes] == ["damping"] * named
+    assert not named or (said.causes[0].probability > 0.9) == (sigmas > 5.0)
+
+
+def test_numbers_move_too_far_alone_or_together() -> None:
+    springs = [Nuisance(f"spring {i}", 0.02, "1", "stiffness", f"share@{i}") for i in range(8)]
+    known = [*springs, Nuisance("start", 1.0, "s"), Nuisance("mass", 0.01, "1", "mass", "share")]
+    at = np.zeros(10)
+    at[8] = 9.0
+    assert moved_far(known, at) == {}
+    at[9] = -4.0
+    at[:8] = 1.0
+    assert moved_far(known, at) == {"mass": pytest.approx(4.0)}
+    at[:2] = 2.9, -2.9
+    assert "stiffness" not in moved_far(known, at)
+    at[:4] = 2.9
+    assert moved_far(known, at)["stiffness"] == pytest.approx(4.34, abs=0.3)
