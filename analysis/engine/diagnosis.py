@@ -7,6 +7,7 @@ import numpy as np
 
 from analysis.engine.all_samples import noise_of
 from analysis.engine.calibrate import Calibrated
+from analysis.engine.check import check
 from analysis.engine.confirm import Confirmation, confirm
 from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
@@ -69,6 +70,8 @@ class Diagnosis:
         Fit before and after, on used and on held-out data.
     implausible
         Better fits that are not believed, the best first.
+    notes
+        What else is to be known, such as candidates that do nothing by themselves.
     """
 
     system: System
@@ -79,6 +82,7 @@ class Diagnosis:
     remains: Remains | None
     confirmation: Confirmation | None
     implausible: tuple[Implausible, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -111,11 +115,17 @@ def diagnose(
         Told of progress.
     anew, most_causes
         As `search` has them.
+
+    Raises
+    ------
+    DataError
+        Something that the system states, or that it simulates, cannot be.
     """
+    notes = check(system)
     if stop_after in ("align", "locate"):
         seen = look(system, tell)
         found = locate(system.bundles, seen.calibrated.problem, seen.calibrated.problem.residual)
-        return Diagnosis(system, seen.calibrated, found, None, None, None, None)
+        return Diagnosis(system, seen.calibrated, found, None, None, None, None, notes=notes)
     searched = search(system, tell, anew=anew, most_causes=most_causes)
     problem = searched.calibrated.problem
     findings = locate(system.bundles, problem, searched.null.problem.residual)
@@ -127,7 +137,7 @@ def diagnose(
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
     return Diagnosis(
-        system, searched.calibrated, findings, searched, judgement, remains, proof, flagged
+        system, searched.calibrated, findings, searched, judgement, remains, proof, flagged, notes
     )
 
 
