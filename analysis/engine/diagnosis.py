@@ -9,12 +9,13 @@ from analysis.engine.all_samples import noise_of
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.check import check
 from analysis.engine.confirm import Confirmation, confirm
+from analysis.engine.doubt import FORMS_OFF, missed
 from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
-from analysis.engine.part import records_of
+from analysis.engine.part import records_of, rings
 from analysis.engine.search import Search, search
 from analysis.engine.system import Array, System
 
@@ -132,7 +133,10 @@ def diagnose(
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)
     aside = len(searched.aside) / len(records_of(system))
-    judgement = judge(searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside)
+    judgement = judge(
+        searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside,
+        settled=not rings(system),
+    )  # fmt: skip
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
@@ -151,6 +155,12 @@ def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
     if searched.faint and not np.isnan(chosen.left):
         most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)
         return Remains(chosen.left, chosen.left > most, found)
+    if not rings(searched.system):
+        known = {one.name: one for one in searched.system.candidates}
+        most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)
+        poor = missed(chosen, searched.null, known, noise) > 1.0 / FORMS_OFF
+        poor = poor or not chosen.hypothesis.parts
+        return Remains(chosen.left, chosen.left > most and poor, found)
     misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
     return Remains(misfit, misfit > POORLY, found)
 
