@@ -49,8 +49,8 @@ def check(system: System) -> tuple[str, ...]:
             remedy="see docs/engine.md, 'What you write'",
         )
     check_bundles(system.bundles)
-    check_nuisances(system)
     check_candidates(system.candidates)
+    check_nuisances(system)
     nominal = Point(np.zeros(len(system.nuisances)))
     (found,) = _simulated(system, [nominal], "the nominal point")
     _check_prediction(system.bundles, found, "the nominal point")

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.engine.part import records_of
+from analysis.engine.part import records_of, rings
 from analysis.engine.system import Bundle, Candidate, Segment, Shape, System, Term
 from cdpr8.errors import DataError
 
@@ -176,6 +176,12 @@ def check_nuisances(system: System) -> None:
             raise DataError(
                 f"record {one.record!r}", allowed=_listed(records), where=where,
                 remedy="the `record` of a bundle, or ''",
+            )  # fmt: skip
+        # Of a machine that states itself, some of what it knows may be left out of the list.
+        if one.cause is not None and one.cause not in known and not rings(system):
+            raise DataError(
+                f"cause {one.cause!r}", allowed=_listed(known), where=where,
+                remedy="the name of a candidate, or None",
             )  # fmt: skip
         if one.cause in known and one.term not in known[one.cause]:
             raise DataError(

@@ -163,6 +163,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str, str]] = {
     "step 0": (lambda: nuisance(step=0.0), "step is 0", "nuisance 'slope'"),
     "twice": (lambda: other(nuisances=(OFFSET, OFFSET)), "called 'offset'", "nuisances"),
     "record": (lambda: nuisance(record="b"), "record 'b'", "nuisance 'slope'"),
+    "its cause": (lambda: nuisance(cause="x"), "cause 'x'", "'bend', 'ripple'"),
     "its term": (lambda: nuisance(term="x"), "term 'x'", "'bend'"),
     "causes twice": (lambda: other(candidates=(BEND, BEND)), "called 'bend'", "candidates"),
     "no terms": (lambda: other(candidates=(replace(RIPPLE, terms=()),)), "no terms", "'ripple'"),
