@@ -217,11 +217,6 @@ def _beside(rung: Sequence[Fitted], faintly: Sequence[Fitted]) -> list[Fitted]:
     return sorted([*rung, *others], key=lambda one: -one.log_score)
 
 
-def rings(system: System) -> bool:
-    """Whether the system has tones of its own."""
-    return any(bundle.tones_hz for bundle in system.bundles)
-
-
 def _promising(faintly: Sequence[Fitted]) -> bool:
     """Whether anything explains, in straight lines, much more than parameters do."""
     nothing = next(one for one in faintly if not one.hypothesis.parts)

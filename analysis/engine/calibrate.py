@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from analysis.engine.evidence import Frame, Problem, directions
 from analysis.engine.lens import Lens
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import SEVERAL, records_of, rings
 from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
 from analysis.engine.system import Array, Point, System
 from analysis.engine.variance import base_variance, form_variance
 
-ROUNDS = 6
-"""Steps, at most."""
+ROUNDS, ROUNDS_ANEW = 6, 20
+"""Steps, at most; and where each may be by new differences."""
 
 EXPLAINED = 4.0
 """Parameters that leave more than this, a feature, are left where they were."""
@@ -29,7 +29,8 @@ MEDIAN_OF_SQUARE = 0.455
 """Median of the square of a standard normal number."""
 
 HOPELESS = 40.0
-"""Parameters that leave more than this, a feature, are not what it is, and are not refined."""
+"""Parameters of a system that rings that leave more than this, a feature, are not what it is, and
+are not refined. Of one that does not, they may begin a thousand times the noise off."""
 
 WORTH_A_STEP = 6.0
 """A step is taken where it promises that the squared misfit falls by this."""
@@ -94,8 +95,8 @@ def calibrate(
     features = simulate_features(system, lens, [Point(at)])[0]
     columns = nuisance_columns(system, lens, at, progress)
     nominal = at, features, columns
-    fresh = True
-    for _ in range(ROUNDS):
+    fresh, ringing = True, rings(system)
+    for _ in range(ROUNDS if ringing else ROUNDS_ANEW):
         residual = data - features
         variance = base_variance(lens, features, data)
         variance = variance + form_variance(lens.labels, residual, UNKNOWN_SHARE, 1.0)
@@ -123,8 +124,10 @@ def calibrate(
         if not better and fresh:
             break
         left = _misfit(data - features, at, base_variance(lens, features, data), used)
-        fresh = (not better or not straight) and left < HOPELESS * int(used.sum())
-        fresh = fresh and len(records_of(system)) < SEVERAL
+        fresh = not better or not straight
+        if ringing:
+            fresh = fresh and left < HOPELESS * int(used.sum())
+            fresh = fresh and len(records_of(system)) < SEVERAL
         if fresh:
             columns = nuisance_columns(system, lens, at, progress)
     base = base_variance(lens, features, data)

@@ -133,6 +133,14 @@ def cause_of(
     )
 
 
+def within_sigma(fitted: Fitted, name: str) -> bool:
+    """Whether a candidate of a hypothesis is no larger than its standard deviation, all of it."""
+    terms = [(name, term) for term in fitted.hypothesis.parts[name].terms]
+    return all(
+        one in fitted.sigmas and abs(fitted.values[one]) < fitted.sigmas[one] for one in terms
+    )
+
+
 def _mean(term: str, laws: Sequence[Rival]) -> tuple[float, float]:
     """Mean and standard deviation of a magnitude over laws that have it."""
     have = [one for one in laws if (one.name, term) in one.fitted.values]

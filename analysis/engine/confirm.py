@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.by_ring import rings
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.part import Part, records_of
+from analysis.engine.part import Part, records_of, rings
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import Search
 from analysis.engine.state import State
@@ -46,8 +45,8 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
 
     Recordings that stand aside are left out.
 
-    Before is the system at its likeliest parameters, which have seen all of the data: that favours
-    it.
+    Before is the system at its likeliest parameters. Those of one that rings have seen all of the
+    data, which favours it; those of another are fitted to the used part, as the hypothesis's are.
 
     Parameters
     ----------
@@ -60,13 +59,16 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     records = [one for one in records_of(system) if one not in search.aside]
     part = Part(system, records) if search.aside else None
     sealed = any(segment.sealed for bundle in bundles for segment in bundle.segments)
-    held = records[len(records) // 2] if len(records) >= LEAST_RECORDS and not sealed else ""
+    held = "" if sealed or len(records) < LEAST_RECORDS else _held(search.system, records)
     start = search.calibrated.at
     if search.faint:
         start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
     if part is not None:
         system, start = part, part.own(start)
-    if search.faint and chosen.hypothesis.parts:
+    if not rings(system):
+        null = search.refiner.settle(search.refiner.again(search.null, _used(search, held)))
+        before = after = _errors(system, null.point.nuisance, None, held, near=False)
+    elif search.faint and chosen.hypothesis.parts:
         before = after = _least(system, _tried(start, None), held)
     else:
         # Where nothing is on, this is what is judged: the held-out part must not have been seen.
@@ -78,6 +80,20 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
         nuisance = again.point.nuisance if part is None else part.own(again.point.nuisance)
         after = _errors(system, nuisance, again.state, held, near=search.faint)
     return Confirmation(before, after, held)
+
+
+def _held(system: System, records: Sequence[str]) -> str:
+    """The recording that is kept back whole, about the middle; "": there is none.
+
+    Of a system that does not ring, one that has parameters of its own, such as where it starts, is
+    not: nothing else tells those.
+    """
+    middle = len(records) // 2
+    if rings(system):
+        return records[middle]
+    own = {one.record for one in system.nuisances}
+    could = [one for one in records if one not in own]
+    return min(could, key=lambda one: abs(records.index(one) - middle), default="")
 
 
 def _errors(

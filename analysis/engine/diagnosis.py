@@ -7,14 +7,16 @@ import numpy as np
 
 from analysis.engine.all_samples import noise_of
 from analysis.engine.calibrate import Calibrated
+from analysis.engine.check import check
 from analysis.engine.confirm import Confirmation, confirm
+from analysis.engine.doubt import FORMS_OFF, missed
 from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
 from analysis.engine.moved import moved_far
-from analysis.engine.part import records_of
+from analysis.engine.part import records_of, rings
 from analysis.engine.search import Search, search
 from analysis.engine.system import Array, System
 
@@ -70,6 +72,8 @@ class Diagnosis:
         Fit before and after, on used and on held-out data.
     implausible
         Better fits that are not believed, the best first.
+    notes
+        What else is to be known, such as candidates that do nothing by themselves.
     """
 
     system: System
@@ -80,6 +84,7 @@ class Diagnosis:
     remains: Remains | None
     confirmation: Confirmation | None
     implausible: tuple[Implausible, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -112,11 +117,17 @@ def diagnose(
         Told of progress.
     anew, most_causes
         As `search` has them.
+
+    Raises
+    ------
+    DataError
+        Something that the system states, or that it simulates, cannot be.
     """
+    notes = check(system)
     if stop_after in ("align", "locate"):
         seen = look(system, tell)
         found = locate(system.bundles, seen.calibrated.problem, seen.calibrated.problem.residual)
-        return Diagnosis(system, seen.calibrated, found, None, None, None, None)
+        return Diagnosis(system, seen.calibrated, found, None, None, None, None, notes=notes)
     searched = search(system, tell, anew=anew, most_causes=most_causes)
     problem = searched.calibrated.problem
     findings = locate(system.bundles, problem, searched.null.problem.residual)
@@ -124,18 +135,14 @@ def diagnose(
     noise = noise_of(system)
     aside = len(searched.aside) / len(records_of(system))
     judgement = judge(
-        searched.fitted,
-        candidates,
-        lost=searched.lost,
-        noise=noise,
-        aside=aside,
-        moved=_moved(searched, noise),
-    )
+        searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside,
+        settled=not rings(system), moved=_moved(searched, noise),
+    )  # fmt: skip
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
     return Diagnosis(
-        system, searched.calibrated, findings, searched, judgement, remains, proof, flagged
+        system, searched.calibrated, findings, searched, judgement, remains, proof, flagged, notes
     )
 
 
@@ -157,6 +164,12 @@ def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
     if searched.faint and not np.isnan(chosen.left):
         most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)
         return Remains(chosen.left, chosen.left > most, found)
+    if not rings(searched.system):
+        known = {one.name: one for one in searched.system.candidates}
+        most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)
+        poor = missed(chosen, searched.null, known, noise) > 1.0 / FORMS_OFF
+        poor = poor or not chosen.hypothesis.parts
+        return Remains(chosen.left, chosen.left > most and poor, found)
     misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
     return Remains(misfit, misfit > POORLY, found)
 

@@ -12,9 +12,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_solve, cholesky, solve_triangular
+from scipy.linalg import cho_solve, solve_triangular
 
 from analysis.engine.lens import Labels
+from analysis.engine.solve import bounded, root_beside_one
 from analysis.engine.system import Array
 from analysis.engine.variance import form_variance
 
@@ -124,9 +125,7 @@ class Frame:
         whole = problem.residual + problem.nuisance @ problem.at
         self.r = whole[used] / self.root
         self.j = problem.nuisance[used] / self.root[:, None]
-        self._factor = cholesky(
-            np.eye(self.j.shape[1]) + self.j.T @ self.j, lower=True, check_finite=False
-        )
+        self._factor = root_beside_one(self.j)
         self._jr = self._half(self.j.T @ self.r)
         self.chi2 = float(self.r @ self.r - self._jr @ self._jr)
         self.log_determinant = float(
@@ -269,33 +268,3 @@ def weigh(
         gains=gains,
         gain=gain,
     )
-
-
-def bounded(matrix: Array, right: Array, lows: Array | None, highs: Array | None) -> Array:
-    """The minimum of the quadratic form within bounds: those that leave them are held there."""
-    count = len(right)
-    estimate = np.zeros(count)
-    if not count:
-        return estimate
-    low = np.full(count, -np.inf) if lows is None else lows
-    high = np.full(count, np.inf) if highs is None else highs
-    free = np.ones(count, dtype=bool)
-    for _ in range(count + 1):
-        if not free.any():
-            break
-        rest = right[free] - matrix[np.ix_(free, ~free)] @ estimate[~free]
-        part = matrix[np.ix_(free, free)]
-        # Of each number its own: units may differ by ten powers of ten.
-        ridge = 1e-10 * np.diag(part) + 1e-300
-        solved = np.linalg.solve(part + np.diag(ridge), rest)
-        held = np.clip(solved, low[free], high[free])
-        outside = held != solved
-        estimate[free] = held
-        if not outside.any():
-            break
-        # One a round, the farthest out: a neighbour may come back in once it is held.
-        places = np.flatnonzero(free)
-        scale = np.sqrt(np.maximum(np.diag(part), 1e-300))
-        worst = int(np.argmax(np.abs(solved - held) * scale))
-        free[places[worst]] = False
-    return estimate

@@ -11,8 +11,10 @@ from dataclasses import dataclass, replace
 from analysis.engine.finder import ASKS, SMALL, STARTS
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Part
+from analysis.engine.part import rings
 from analysis.engine.screen import Scored
 from analysis.engine.search import Search
+from analysis.engine.settled import rested
 from analysis.engine.system import Candidate
 
 
@@ -94,7 +96,11 @@ def _beyond(
         starts.append(Scored(hypothesis, 0.0, weighed, {**begun, **chosen.values}))
         if candidate.name in chosen.hypothesis.parts:
             break
-    fitted = refiner.fit_from(starts, STARTS)
+    if rings(searched.system):
+        fitted = refiner.fit_from(starts, STARTS)
+    else:
+        # As the chosen one was: to where it stays.
+        fitted = rested(refiner, refiner.fit_from(starts, len(starts)))
     gain = fitted.log_score - chosen.log_score
     plausible = {term.name: term for term in candidate.terms}
     found = []

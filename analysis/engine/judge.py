@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.cause import Cause, cause_of, doubted
+from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
+from analysis.engine.doubt import doubt_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import LOG_ODDS
 from analysis.engine.moved import rise_of
@@ -100,6 +101,7 @@ def judge(
     noise: float = NOISE,
     aside: float = 0.0,
     moved: Mapping[str, float] | None = None,
+    settled: bool = False,
 ) -> Judgement:
     """Weigh the fitted hypotheses.
 
@@ -118,6 +120,9 @@ def judge(
     moved
         Numbers that nothing left out has moved too far, and by how many sigmas; None: they were not
         led to the noise.
+    settled
+        The system does not ring: what hypotheses leave is of where they stay (`settled`), and is
+        held against what nothing leaves.
     """
     noise = max(noise, NOISE)
     scores = np.array([_plausible_score(one) for one in fitted])
@@ -126,6 +131,9 @@ def judge(
         default=-np.inf,
     )
     scores[_idle(fitted, scores, candidates)] = -np.inf
+    if settled:
+        idle = [any(within_sigma(one, name) for name in one.hypothesis.names) for one in fitted]
+        scores[idle] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
     for i, one in enumerate(fitted):
         if moved and len(one.hypothesis.names) == 1 and one.hypothesis.names[0] in moved:
@@ -135,7 +143,9 @@ def judge(
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
     least = TEMPER_EXACT if form < EXACT else TEMPER
     temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
-    if best.left < noise:
+    if settled:
+        temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
+    elif best.left < noise:
         temper = min(temper, MOST_AT_NOISE)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
@@ -165,6 +175,9 @@ def judge(
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
     doubt = doubt_of(chosen, candidates, lost=lost, noise=noise)
+    if settled:
+        null = next(one for one in fitted if not one.hypothesis.parts)
+        doubt = doubt_beside(chosen, null, candidates, noise)
     doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
     causes = tuple(doubted(one, doubt) for one in sure)

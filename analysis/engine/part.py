@@ -90,3 +90,8 @@ class Part:
 def records_of(system: System) -> list[str]:
     """Names of a system's recordings, in their order."""
     return list(dict.fromkeys(one.record for one in system.bundles))
+
+
+def rings(system: System) -> bool:
+    """Whether the system has tones of its own."""
+    return any(bundle.tones_hz for bundle in system.bundles)

@@ -11,7 +11,7 @@ from analysis.engine.evidence import Frame, Problem, weigh
 from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored
-from analysis.engine.sensitivity import nuisance_columns, simulate_features
+from analysis.engine.sensitivity import nuisance_columns, simulate_features, sound
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
@@ -36,6 +36,9 @@ SHORTEST = 2
 
 ROUNDS_ANEW, SHORTEST_ANEW = 20, 5
 """The same where everything is simulated anew: the way is longer."""
+
+PATIENCE_ANEW = 4
+"""And what a hypothesis promises is asked for after so many steps only: the first tell little."""
 
 
 class Refiner:
@@ -92,7 +95,7 @@ class Refiner:
         """
         nuisance = np.clip(start.weighed.nuisance, -FAR_SIGMAS, FAR_SIGMAS)
         state, used = State.of(start, self.candidates), self._problem.used
-        state = sharpened(state, lambda there: self._score_at(there, nuisance), everywhere=False)
+        state = sharpened(state, lambda there: self.score_at(there, nuisance), everywhere=False)
         return self._improve(state, nuisance, used, rounds, at_least)
 
     def fit_from(self, starts: Sequence[Scored], most: int) -> Fitted:
@@ -116,7 +119,7 @@ class Refiner:
         ]
         return max(fitted, key=lambda one: one.log_score)
 
-    def again(self, fitted: Fitted, used: NDArray[np.bool_]) -> Fitted:
+    def again(self, fitted: Fitted, used: NDArray[np.bool_], at_least: float = -np.inf) -> Fitted:
         """Fit a hypothesis once more, to other features.
 
         Parameters
@@ -125,8 +128,11 @@ class Refiner:
             From where.
         used
             Which features count, shape (f,).
+        at_least
+            As for `fit`.
         """
-        return self._improve(fitted.state, fitted.problem.at, used & self._problem.used, ROUNDS)
+        used = used & self._problem.used
+        return self._improve(fitted.state, fitted.problem.at, used, ROUNDS, at_least)
 
     def at(self, state: State, nuisance: Array) -> Fitted:
         """A hypothesis where it stands, without moving it.
@@ -190,7 +196,8 @@ class Refiner:
         shortest = SHORTEST_ANEW if self.anew else SHORTEST
         for turn in range(rounds - 1):
             # A start is where screening thought it best, to first order: one step it gets.
-            if turn and best.log_score + 0.5 * best.weighed.gain < at_least and not self.anew:
+            patience = PATIENCE_ANEW if self.anew else 1
+            if turn >= patience and best.log_score + 0.5 * best.weighed.gain < at_least:
                 break
             there = state.moved(best.weighed.estimate, share)
             nuisance_there = nuisance + share * (best.weighed.nuisance - nuisance)
@@ -207,11 +214,17 @@ class Refiner:
                     break
         return best
 
-    def _score_at(self, state: State, nuisance: Array) -> float:
-        """How well a simulation fits as it stands, parameters free within their priors."""
+    def score_at(self, state: State, nuisance: Array) -> float:
+        """How well a simulation fits as it stands, parameters free within their priors.
+
+        Parameters
+        ----------
+        state, nuisance
+            Its free numbers and the directions of the nuisances.
+        """
         point = state.point(self._rotation @ nuisance)
         (features,) = simulate_features(self.system, self.lens, [point])
-        if not np.isfinite(features).all():
+        if not sound(features).all():
             return -np.inf
         problem = replace(self._problem, residual=self.data - features, at=nuisance)
         return -_misfit_by(problem, state, problem.base)
@@ -225,7 +238,7 @@ class Refiner:
         # what everything does there, which many a step is too bad to be worth.
         point = state.point(self._rotation @ nuisance)
         (features,) = simulate_features(self.system, self.lens, [point])
-        if not np.isfinite(features).all():
+        if not sound(features).all():
             return -np.inf, None
         problem = replace(best.problem, residual=self.data - features, at=nuisance)
         variance = best.weighed.variance
@@ -243,8 +256,8 @@ class Refiner:
             points += [replace(one.point(there), ring="damped") for one in calm]
         found = simulate_features(self.system, self.lens, points)
         # With numbers far out a simulation may come to nothing.
-        sound = bool(np.isfinite(found).all())
-        found = np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)
+        whole = bool(sound(found).all())
+        found = np.where(sound(found), found, 0.0)
         features, damped = found[0], found[1:]
         columns = np.stack(
             [(damped[1 + k] - damped[0]) / state.signed_step(k) for k in range(count)], axis=1
@@ -291,7 +304,7 @@ class Refiner:
             problem=problem,
             log_score=(
                 weighed.log_evidence + state.hypothesis.log_prior(self.candidates)
-                if sound
+                if whole and np.isfinite(weighed.log_evidence)
                 else -np.inf
             ),
             weighed=weighed,

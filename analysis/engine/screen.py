@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, bounded, weigh
+from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, weigh
 from analysis.engine.hypothesis import LOG_COST, Hypothesis, Part, part_log_prior
+from analysis.engine.solve import bounded
 from analysis.engine.system import Array, Candidate
 from analysis.engine.variance import form_variance
 

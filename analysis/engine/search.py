@@ -3,18 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from analysis.engine.by_ring import Found, Led, by_ring, rings
+from analysis.engine.by_ring import Found, Led, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed_search import FAR_BEHIND
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import SEVERAL, records_of, rings
 from analysis.engine.pilot import by_pilot
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
+from analysis.engine.settled import settled
 from analysis.engine.system import Array, System
 
 FOLLOWED = 2
@@ -93,6 +94,10 @@ def search(
         found = (by_pilot if several else by_ring)(refiner, most_causes, tell)
     if not found.fitted:
         found = _by_lines(refiner, null, most_causes, tell, found.led)
+    if not rings(system):
+        refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
+        found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))
+        null = next(one for one in found.fitted if not one.hypothesis.parts)
     return Search(
         system, lens, data, calibrated, tuple(found.screened), null, tuple(found.fitted), refiner,
         faint=found.faint, aside=found.aside,

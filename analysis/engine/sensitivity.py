@@ -1,11 +1,14 @@
 """What each nuisance and each term of each candidate does to the features."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.engine.lens import Lens
+from analysis.engine.part import rings
 from analysis.engine.system import Array, Candidate, Point, Setting, System
 
 Progress = Callable[[int, int], None]
@@ -13,6 +16,13 @@ Progress = Callable[[int, int], None]
 
 BATCH = 128
 """Points simulated at a time."""
+
+BEYOND = 1e12
+"""In units of its noise, nothing is recorded that far off: a simulation that is has come to
+nothing, and squares of what it holds are more than numbers can be."""
+
+FAILED = (ArithmeticError, ValueError)
+"""What solvers raise where they are taken too far; other exceptions are mistakes, and are seen."""
 
 Columns = dict[tuple[str, int], Array]
 """(candidate, variant of its shapes) -> what one unit of each term does, shape (f, k)."""
@@ -25,9 +35,23 @@ def simulate_features(
     found = np.empty((len(points), lens.size))
     for first in range(0, len(points), BATCH):
         part = points[first : first + BATCH]
-        found[first : first + len(part)] = system.simulate(part, lens)
+        found[first : first + len(part)] = _simulated(system, lens, part)
         if progress is not None:
             progress(min(first + BATCH, len(points)), len(points))
+    return found
+
+
+def _simulated(system: System, lens: Lens, points: Sequence[Point]) -> Array:
+    """Features of points, shape (number of points, f), NaN where a simulation comes to nothing."""
+    try:
+        return np.asarray(system.simulate(points, lens), dtype=float)
+    except FAILED:
+        if rings(system):
+            raise
+    found = np.full((len(points), lens.size), np.nan)
+    for i, point in enumerate(points):
+        with suppress(*FAILED):
+            (found[i],) = system.simulate([point], lens)
     return found
 
 
@@ -112,4 +136,9 @@ def term_columns(
 
 def _finite(change: Array) -> Array:
     """A simulation that came to nothing tells nothing."""
-    return np.nan_to_num(change, nan=0.0, posinf=0.0, neginf=0.0)
+    return np.where(sound(change), change, 0.0)
+
+
+def sound(features: Array) -> NDArray[np.bool_]:
+    """Which of them a simulation can have come to."""
+    return np.asarray(np.abs(features) < BEYOND)

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.evidence import bounded
 from analysis.engine.followed import FINE, Followed
 from analysis.engine.known import LOOSE, Known
 from analysis.engine.ring_samples import Samples
+from analysis.engine.solve import bounded
 from analysis.engine.system import Array
 
 HALFWAY = 0.5

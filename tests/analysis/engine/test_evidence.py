@@ -5,8 +5,9 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
-from analysis.engine.evidence import Frame, Problem, bounded, directions, weigh
+from analysis.engine.evidence import Frame, Problem, directions, weigh
 from analysis.engine.lens import Lens
+from analysis.engine.solve import bounded
 from analysis.engine.system import Bundle, Segment
 from analysis.engine.variance import form_variance
 

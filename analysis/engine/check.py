@@ -1,0 +1,186 @@
+"""What the engine is given, checked before anything is made of it.
+
+What is stated is looked at (`stated`), and the simulator is asked once: for the nominal point, and
+of a system that does not ring for each parameter and each magnitude alone as well. A system that
+rings takes long to simulate, and is mostly a machine that states itself.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.part import rings
+from analysis.engine.stated import check_bundles, check_candidates, check_nuisances, name_of
+from analysis.engine.system import Bundle, Candidate, Point, Prediction, Setting, System
+from cdpr8.errors import DataError
+
+LEAST_CHANGE = 1e-12
+"""A change that is less than this share of what was simulated is none."""
+
+PARTS = ("name", "bundles", "nuisances", "candidates", "simulate")
+
+
+def check(system: System) -> tuple[str, ...]:
+    """Whether the engine can make anything of a system; what else is to be known of it.
+
+    Parameters
+    ----------
+    system
+        What is to be diagnosed.
+
+    Returns
+    -------
+    tuple of str
+        What does nothing by itself, which may be as it should: a sentence for each.
+
+    Raises
+    ------
+    DataError
+        Something that is stated, or what is simulated, cannot be.
+    """
+    missing = [one for one in PARTS if not hasattr(system, one)]
+    if missing:
+        raise DataError(
+            f"a {type(system).__name__} has no {', '.join(missing)}",
+            allowed="an object with " + ", ".join(PARTS),
+            remedy="see docs/engine.md, 'What you write'",
+        )
+    check_bundles(system.bundles)
+    check_candidates(system.candidates)
+    check_nuisances(system)
+    nominal = Point(np.zeros(len(system.nuisances)))
+    (found,) = _simulated(system, [nominal], "the nominal point")
+    _check_prediction(system.bundles, found, "the nominal point")
+    return () if rings(system) else _each(system, nominal, found)
+
+
+def _each(system: System, nominal: Point, at: Prediction) -> tuple[str, ...]:
+    """Each parameter and each magnitude simulated alone."""
+    named: list[tuple[str, Point]] = []
+    for i, nuisance in enumerate(system.nuisances):
+        moved = nominal.nuisance.copy()
+        moved[i] += nuisance.step
+        named.append((f"nuisance {nuisance.name!r} at its step", Point(moved)))
+    for candidate in system.candidates:
+        named += [
+            (
+                f"candidate {candidate.name!r} with {term.name!r} at its step",
+                _on(nominal, candidate, term.name),
+            )
+            for term in candidate.terms
+        ]
+    points = [one for _, one in named]
+    try:
+        found = _simulated(system, points, f"{len(points)} points at once")
+    except DataError as error:
+        if error.__cause__ is None:
+            raise
+        # Which of them it was.
+        found = [_simulated(system, [point], what)[0] for what, point in named]
+    idle = []
+    for (what, _), one in zip(named, found, strict=True):
+        _check_prediction(system.bundles, one, what)
+        if not _changes(system.bundles, at, one):
+            idle.append(what)
+    if named and len(idle) == len(named):
+        raise DataError(
+            "neither a parameter nor a candidate changes what is simulated",
+            allowed="a simulation that goes by the point it is given",
+            where="simulate",
+            remedy="use point.nuisance (in sigmas) and point.effects",
+        )
+    if system.nuisances and all(
+        f"nuisance {one.name!r} at its step" in idle for one in system.nuisances
+    ):
+        raise DataError(
+            "no nuisance changes what is simulated",
+            allowed="parameters that the simulation goes by",
+            where="simulate",
+            remedy="use point.nuisance (in sigmas), or leave out nuisances that do nothing",
+        )
+    return tuple(f"{what} changes nothing that is looked at" for what in idle)
+
+
+def _on(nominal: Point, candidate: Candidate, term: str) -> Point:
+    """With a magnitude at its step; all of them, where they act together."""
+    together = [one for one in candidate.terms if candidate.together or one.name == term]
+    values = {one.name: one.step for one in together}
+    shapes = {one.name: one.default for one in candidate.shapes}
+    return replace(nominal, effects={candidate.name: Setting(values, shapes)})
+
+
+def _as_it_is(prediction: Prediction) -> Prediction:
+    return prediction
+
+
+def _simulated(system: System, points: Sequence[Point], what: str) -> list[Any]:
+    simulate: Callable[..., Any] = system.simulate
+    try:
+        found = simulate(points, _as_it_is)
+    except Exception as error:
+        raise DataError(
+            f"the simulation of {what} raised {type(error).__name__}: {error}",
+            where="simulate",
+            remedy="the cause is below; a simulation that comes to nothing may hold NaN",
+        ) from error
+    if not isinstance(found, list | tuple) or len(found) != len(points):
+        said = f"{len(found)} results" if isinstance(found, list | tuple) else repr(type(found))
+        raise DataError(
+            f"simulate returned {said} for {len(points)} points",
+            allowed="a list of what `reduce` makes of each point's prediction, one for each",
+            where="simulate",
+            remedy="return [reduce(predict(point)) for point in points]",
+        )
+    return list(found)
+
+
+def _check_prediction(bundles: Sequence[Bundle], found: Any, what: str) -> None:
+    """Whether a prediction has the form of the recording, and holds numbers where that is seen."""
+    if not isinstance(found, list | tuple) or len(found) != len(bundles):
+        said = f"{len(found)} arrays" if isinstance(found, list | tuple) else repr(type(found))
+        raise DataError(
+            f"the simulation of {what} gives {said}",
+            allowed=f"a list of {len(bundles)}, one for each bundle",
+            where="simulate",
+            remedy="hand `reduce` a list of arrays of shape (samples, channels)",
+        )
+    for i, (bundle, seen) in enumerate(zip(bundles, found, strict=True)):
+        shape = np.shape(seen)
+        if shape != bundle.value.shape:
+            raise DataError(
+                f"the simulation of {what} has shape {shape}",
+                allowed=f"{bundle.value.shape}, as its `value` has",
+                where=f"simulate, {name_of(bundle, i)}",
+                remedy="one row for each sample time, one column for each channel",
+            )
+        inside = looked_at(bundle)
+        bad = np.flatnonzero(~np.isfinite(np.asarray(seen, dtype=float)[inside]).all(axis=1))
+        if bad.size:
+            raise DataError(
+                f"the simulation of {what} is not finite in {bad.size} of {int(inside.sum())} "
+                f"samples, first at {bundle.t_s[inside][bad[0]]:g} s",
+                allowed="finite numbers",
+                where=f"simulate, {name_of(bundle, i)}",
+                remedy="simulate with finer steps, or take a smaller `step`",
+            )
+
+
+def looked_at(bundle: Bundle) -> NDArray[np.bool_]:
+    """Which samples lie in a segment, shape (n,)."""
+    inside = np.zeros(len(bundle.t_s), dtype=bool)
+    for one in bundle.segments:
+        inside |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
+    return inside
+
+
+def _changes(bundles: Sequence[Bundle], at: Prediction, found: Prediction) -> bool:
+    """Whether anything that is looked at differs."""
+    for bundle, before, after in zip(bundles, at, found, strict=True):
+        inside = looked_at(bundle)
+        size = np.abs(before[inside]).max(initial=0.0)
+        if np.abs(after[inside] - before[inside]).max(initial=0.0) > LEAST_CHANGE * size:
+            return True
+    return False

@@ -1,0 +1,212 @@
+"""Hypotheses brought to where they stay, all by one measure, before they are compared.
+
+What parameters do is known about the nominal simulation. At forty decibels of signal over noise a
+parameter that is one standard deviation off bends it more than the noise: a hypothesis weighed by
+what parameters did elsewhere is not at its best, and loses against any law that takes back a little
+of what that misses, nothing above all. So the likeliest, and nothing, are fitted once more with
+everything simulated anew, and what they leave is counted in noise alone.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.engine.cause import within_sigma
+from analysis.engine.finder import SMALL
+from analysis.engine.fitted import Fitted
+from analysis.engine.refine import FAR_SIGMAS, SETTLED, Refiner
+from analysis.engine.state import State
+from analysis.engine.variance import base_variance
+
+MOST = 10
+"""So many of the likeliest hypotheses are brought to where they stay, beside nothing."""
+
+FAR_BEHIND = 60.0
+"""And what may still come before them: it is no farther behind the best than this, the most that a
+screened hypothesis may be behind to be fitted to the end."""
+
+AT_MOST = 20
+"""But no more than this in all: a simulation takes its time."""
+
+PASSES = 2
+"""Of holding hypotheses against those of one cause less."""
+
+WORTH = 12.0
+"""What is so far behind the best, as screening has it, may be what the best is made of."""
+
+RUNG = 3.0
+"""Sizes of a law that are tried differ by this."""
+
+TURNS = 3
+"""A fit that ends at another place than it began is begun there again, so often."""
+
+Key = tuple[object, ...]
+
+
+def settled(
+    refiner: Refiner, null: Fitted, fitted: Sequence[Fitted], *, as_they_are: bool = False
+) -> list[Fitted]:
+    """Nothing and the likeliest hypotheses where they stay, the best first.
+
+    Parameters
+    ----------
+    refiner
+        Fits with everything simulated anew.
+    null
+        Nothing on.
+    fitted
+        Hypotheses, the best first.
+    as_they_are
+        They were fitted with everything simulated anew: they stay where they are.
+    """
+    waiting = [one for one in fitted if one.hypothesis.parts]
+    done = {null.hypothesis.key: _at_rest(refiner, null, -np.inf)}
+    while waiting and len(done) <= AT_MOST:
+        best = max(one.log_score for one in done.values())
+        if len(done) > MOST and waiting[0].log_score < best - FAR_BEHIND:
+            break
+        one = waiting.pop(0)
+        stays = one if as_they_are else _at_rest(refiner, one, best - FAR_BEHIND)
+        done[one.hypothesis.key] = stays
+    held: set[Key] = set()
+    for _ in range(PASSES):
+        if not _nested(refiner, done, held):
+            break
+    known = {one.hypothesis.names for one in done.values()}
+    found = [_counted(refiner, one, refiner.settle(one)) for one in done.values()]
+    # What was fitted with older columns, and is far behind, is counted where it is.
+    found += [_counted(refiner, one, one) for one in waiting if one.hypothesis.names not in known]
+    return sorted(found, key=lambda one: -one.log_score)
+
+
+def rested(refiner: Refiner, start: Fitted, at_least: float = -np.inf) -> Fitted:
+    """A hypothesis where it stays.
+
+    Parameters
+    ----------
+    refiner
+        Fits with everything simulated anew.
+    start
+        From where.
+    at_least
+        As for `Refiner.fit`.
+    """
+    best = start
+    for _ in range(TURNS):
+        found = refiner.settle(refiner.again(best, best.problem.used, at_least))
+        if not found.log_score > best.log_score + SETTLED:
+            return found if np.isfinite(found.log_score) else best
+        best = found
+        if best.log_score < at_least:
+            break
+    return best
+
+
+def _nested(refiner: Refiner, done: dict[Key, Fitted], held: set[Key]) -> bool:
+    """Whether any hypothesis came farther from where one with a cause less, or more, has come.
+
+    What is there at next to no size explains nothing: where it makes a hypothesis likelier all the
+    same, the one without has not come to where it is likeliest. Nor has a hypothesis that explains
+    less than one without one of its causes.
+    """
+    better = False
+    best = max(one.log_score for one in done.values())
+    for larger in list(done.values()):
+        for name in larger.hypothesis.names:
+            rest = larger.hypothesis.without(name).names
+            fewer = [one for one in done.values() if one.hypothesis.names == rest]
+            smaller = max(fewer, key=lambda one: one.log_score, default=None)
+            starts = []
+            # The likeliest is held against what it is without each of its causes.
+            contends = (
+                larger.log_score > best - WORTH and (larger.hypothesis.names, rest) not in held
+            )
+            if within_sigma(larger, name) or contends:
+                held.add((larger.hypothesis.names, rest))
+                starts.append(refiner.at(larger.state.without(name), larger.problem.at))
+            if smaller is not None and _evidence(refiner, larger) < (
+                _evidence(refiner, smaller) - SETTLED
+            ):
+                starts += _with_a_little(refiner, smaller, larger, name)
+            for start in starts:
+                before = done.get(start.hypothesis.key)
+                least = -np.inf if before is None else before.log_score + SETTLED
+                tried = rested(refiner, start, least)
+                if tried.log_score > least:
+                    done[tried.hypothesis.key] = tried
+                    better = True
+    return better
+
+
+def _with_a_little(refiner: Refiner, smaller: Fitted, larger: Fitted, name: str) -> list[Fitted]:
+    """A hypothesis begun where one without one of its causes is, with a little of that."""
+    part = larger.hypothesis.parts[name]
+    hypothesis = smaller.hypothesis.plus(name, part)
+    found = []
+    for share in (SMALL, -SMALL):
+        size = {(name, t.name): share * t.step for t in refiner.candidates[name].terms}
+        own = {one: value for one, value in size.items() if one[1] in part.terms}
+        state = State.at(hypothesis, {**smaller.values, **own}, refiner.candidates)
+        found.append(refiner.at(state, smaller.problem.at))
+    return found[:1] if np.array_equal(found[0].state.values, found[1].state.values) else found
+
+
+def _evidence(refiner: Refiner, fitted: Fitted) -> float:
+    """What the data say alone."""
+    return fitted.log_score - fitted.hypothesis.log_prior(refiner.candidates)
+
+
+def _at_rest(refiner: Refiner, fitted: Fitted, at_least: float) -> Fitted:
+    """From where it stands, and where parameters were dragged far, from the likeliest as well."""
+    nuisance = fitted.point.nuisance
+    starts = [nuisance]
+    if np.abs(nuisance).max(initial=0.0) > FAR_SIGMAS or not fitted.hypothesis.parts:
+        starts.append(np.zeros_like(nuisance))
+    states = [fitted.state for _ in starts]
+    rung = _on_ladder(refiner, fitted)
+    if rung is not None:
+        states.append(rung)
+        starts.append(np.zeros_like(nuisance))
+    begun = (
+        refiner.at(state, refiner.directions_of(one))
+        for state, one in zip(states, starts, strict=True)
+    )
+    found = [rested(refiner, one, at_least) for one in begun]
+    return max(found, key=lambda one: one.log_score)
+
+
+def _on_ladder(refiner: Refiner, fitted: Fitted) -> State | None:
+    """A size at which one cause alone, parameters at their likeliest, fits better than where it is.
+
+    Screening knows what a little of a law does. Of one that bends what is simulated by a thousand
+    times the noise, a fit from there ends in a hollow: sizes from that of screening to the largest
+    are tried.
+    """
+    if len(fitted.hypothesis.parts) != 1:
+        return None
+    (name,) = fitted.hypothesis.parts
+    candidate = refiner.candidates[name]
+    if candidate.fixed:
+        return None
+    known = refiner.directions_of(np.zeros_like(fitted.point.nuisance))
+    best, least = None, refiner.score_at(fitted.state, refiner.directions_of(fitted.point.nuisance))
+    on = [one for one in candidate.terms if one.name in fitted.hypothesis.parts[name].terms]
+    for sign in (1.0, -1.0):
+        size = sign
+        while any(one.low <= size * one.step <= one.high for one in on):
+            values = {(name, one.name): size * one.step for one in on}
+            state = State.at(fitted.hypothesis, values, refiner.candidates)
+            score = refiner.score_at(state, known)
+            if score > least:
+                best, least = state, score
+            size *= RUNG
+    return best
+
+
+def _counted(refiner: Refiner, fitted: Fitted, there: Fitted) -> Fitted:
+    """With what it leaves: of a feature, squared, in noise and the simulator's own error."""
+    used = there.problem.used
+    variance = base_variance(refiner.lens, there.features, refiner.data)
+    left = float(np.mean(there.problem.residual[used] ** 2 / variance[used]))
+    return replace(fitted, left=left if np.isfinite(fitted.log_score) else np.inf)
