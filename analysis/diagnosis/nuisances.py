@@ -115,6 +115,8 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
             sigma = POSE_ZERO_M if i < 3 else POSE_ZERO_RAD
             unit = "m" if i < 3 else "rad"
             found.append((Nuisance(f"pose zero {i}", sigma, unit), Meaning("pose_zero", axis=i)))
+    # Of several runs each has pretensions of its own; one that is off in all is the candidate's.
+    cause = "pretension" if len(recordings) == 1 else None
     for r, one in enumerate(recordings):
         known = one.run.start.motion_start_known
         sigma = START_S if known else UNKNOWN_START_S
@@ -129,7 +131,8 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
             row = cable.pretension_n
             if row.sigma > 0.0:
                 found.append(
-                    (Nuisance(f"pretension of {one.run.name}@{i}", row.sigma, "N",
+                    (Nuisance(f"pretension of {one.run.name}@{i}", row.sigma, "N", cause,
+                              f"pretension_offset_n@{i}" if cause else None,
                               record=one.run.name),
                      Meaning("pretension", "pretension_offset_n", i, r))
                 )  # fmt: skip

@@ -15,9 +15,8 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
-from analysis.engine.moved import moved_far
 from analysis.engine.part import records_of, rings
-from analysis.engine.search import Search, search
+from analysis.engine.search import REMAINS_ALONE, Search, search
 from analysis.engine.system import Array, System
 
 Stage = Literal["align", "locate", "name", "confirm"]
@@ -26,9 +25,9 @@ POORLY = 2.0
 """A hypothesis whose misfit is more than this for each feature leaves something unexplained."""
 
 
-REMAINS, REMAINS_ALONE = 0.2, 0.1
+REMAINS = 0.2
 """Where it was led to the ring's phase: what is so much more than noise for each sample. Laws are
-never quite exact; where nothing is on, there is no law that could be."""
+never quite exact."""
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,7 @@ def diagnose(
     aside = len(searched.aside) / len(records_of(system))
     judgement = judge(
         searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside,
-        settled=not rings(system), moved=_moved(searched, noise),
+        settled=not rings(system), moved=searched.moved,
     )  # fmt: skip
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
@@ -144,14 +143,6 @@ def diagnose(
     return Diagnosis(
         system, searched.calibrated, findings, searched, judgement, remains, proof, flagged, notes
     )
-
-
-def _moved(searched: Search, noise: float) -> dict[str, float]:
-    """Numbers that moved too far, where with nothing left out they came to the noise."""
-    null = next(one for one in searched.fitted if not one.hypothesis.parts)
-    if not searched.faint or not null.left < noise + REMAINS_ALONE:
-        return {}
-    return moved_far(searched.system.nuisances, null.point.nuisance)
 
 
 def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:

@@ -7,12 +7,24 @@ as likely off as not.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import chi2, norm
 
-from analysis.engine.hypothesis import LOG_ODDS
+from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
+from analysis.engine.hypothesis import LOG_ODDS, Hypothesis, Part
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.state import State
 from analysis.engine.system import Array, Nuisance
+
+STANDS_OUT = 2.0
+"""Of its numbers those that moved by more than this are released, or the one that moved most."""
+
+EFFORT = 400.0
+"""Whole simulations to lead it from there: some three times all differences."""
 
 EVEN = 3.0
 """A number that has moved by so many sigmas is as likely off as not (design, section 6, step 2)."""
@@ -59,3 +71,34 @@ def rise_of(sigmas: float, temper: float) -> float:
         By which factor scores count for less: one cause more is no likelier for that.
     """
     return 0.5 * (sigmas**2 - EVEN**2) - LOG_ODDS * (temper - 1.0)
+
+
+def released(refiner: Refiner, null: Fitted, cause: str) -> Fitted:
+    """The hypothesis that a cause's numbers are off, led from where they had moved by themselves.
+
+    Its score is that of nothing: how likely it is, is told by how far they had moved.
+
+    Parameters
+    ----------
+    refiner
+        Makes it.
+    null
+        Nothing left out, led to the noise.
+    cause
+        A candidate whose numbers are nuisances, and have moved.
+    """
+    system, at = refiner.system, null.point.nuisance.copy()
+    own = [i for i, one in enumerate(system.nuisances) if one.cause == cause and one.term]
+    far = [i for i in own if abs(at[i]) > STANDS_OUT] or [max(own, key=lambda i: abs(at[i]))]
+    known = {i: system.nuisances[i] for i in far}
+    values = {(cause, one.term or ""): float(at[i] * one.sigma) for i, one in known.items()}
+    hypothesis = Hypothesis({cause: Part(tuple(one.term or "" for one in known.values()))})
+    at[far] = 0.0
+    led = follow_ring(
+        system, at, State.at(hypothesis, values, refiner.candidates),
+        everything=True, near=True, most=EFFORT,
+    )  # fmt: skip
+    assert led.state is not None
+    there = refiner.at(led.state, refiner.directions_of(led.nuisance))
+    point = Followed(led.nuisance, led.state).point
+    return replace(there, log_score=null.log_score, point=point, left=min(led.left, null.left))

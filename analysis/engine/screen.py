@@ -117,7 +117,14 @@ class Screen:
                 best, variant = scored, v
         if best is None:
             return None
-        return self._score(best.hypothesis, {name: variant}, (name,))
+        # One size of the error of form alone is for those that do little, however little of it they
+        # explain: what explains most for its numbers is weighed in full as well.
+        _, v, terms, shared = found[0]
+        most = self.on.plus(name, Part(terms, shared, candidate.variants()[v]))
+        whole = self._score(best.hypothesis, {name: variant}, (name,))
+        if most.key == best.hypothesis.key and v == variant:
+            return whole
+        return max(whole, self._score(most, {name: v}, (name,)), key=lambda one: one.log_score)
 
     def with_terms(self, name: str, terms: tuple[str, ...]) -> Scored:
         """One more candidate with given terms, each its own value, at its first variant."""

@@ -1,8 +1,9 @@
 """The search: parameters, what the ring tells, what lines tell, and what both come to."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
+from analysis.engine.all_samples import noise_of
 from analysis.engine.by_ring import Found, Led, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
@@ -10,6 +11,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed_search import FAR_BEHIND
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
+from analysis.engine.moved import moved_far, released
 from analysis.engine.part import SEVERAL, records_of, rings
 from analysis.engine.pilot import by_pilot
 from analysis.engine.refine import Refiner
@@ -24,6 +26,11 @@ FOLLOWED = 2
 UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
 is seen without it."""
+
+
+REMAINS_ALONE = 0.1
+"""Where nothing is on, there is no law that could be a little off: what is so much more than noise
+for each sample is something."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +55,8 @@ class Search:
         Whether parameters alone lead to the noise, so that scores are those of the followed ring.
     aside
         Recordings that count for nothing there: what is on could not be led through them.
+    moved
+        Candidates whose numbers nothing left out has moved too far, and by how many sigmas.
     """
 
     system: System
@@ -60,6 +69,7 @@ class Search:
     refiner: Refiner
     faint: bool = False
     aside: tuple[str, ...] = ()
+    moved: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def lost(self) -> bool:
@@ -98,10 +108,26 @@ def search(
         refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
         found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))
         null = next(one for one in found.fitted if not one.hypothesis.parts)
+    moved = _moved(system, found)
+    named = {one.hypothesis.names for one in found.fitted}
+    alone = [one for one in found.fitted if not one.hypothesis.parts][:1]
+    more = [released(refiner, alone[0], name) for name in moved if (name,) not in named]
+    fitted = (*found.fitted, *more)
     return Search(
-        system, lens, data, calibrated, tuple(found.screened), null, tuple(found.fitted), refiner,
-        faint=found.faint, aside=found.aside,
+        system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
+        faint=found.faint, aside=found.aside, moved=moved,
     )  # fmt: skip
+
+
+def _moved(system: System, found: Found) -> dict[str, float]:
+    """Numbers that moved too far where nothing left out was led to the noise."""
+    alone = (one for one in found.fitted if not one.hypothesis.parts)
+    null = next(alone, None)
+    if null is None or not (found.faint and null.left < noise_of(system) + REMAINS_ALONE):
+        return {}
+    known = {one.name for one in system.candidates}
+    far = moved_far(system.nuisances, null.point.nuisance)
+    return {name: sigmas for name, sigmas in far.items() if name in known}
 
 
 def _by_lines(

@@ -1,0 +1,51 @@
+"""Screening: which terms of a candidate are worth a look, and numbers that parameters have moved."""
+
+import numpy as np
+import pytest
+
+from analysis.engine import diagnose
+from analysis.engine.evidence import Problem
+from analysis.engine.faint import _labels
+from analysis.engine.screen import Screen
+from analysis.engine.system import Candidate, Term
+from tests.analysis.engine.test_by_ring import Tuned
+from tests.analysis.engine.test_ring_fit import SIGMA, ring
+
+SHARES = tuple(Term(f"share@{i}", "share", "1", str(i), -0.5, 0.5, 0.1) for i in range(8))
+HALF = tuple(one.name for one in SHARES[:4])
+STIFFNESS = Candidate(
+    "stiffness", "stiffness", "parameter", SHARES, form_share=0.01, combinations=(HALF,)
+)
+
+
+def test_the_one_number_that_moved_far_is_offered_alone_though_it_does_much() -> None:
+    """What it does is 300 times the noise: an error of form of one per cent would hide it."""
+    generator = np.random.default_rng(1)
+    does = 300.0 * generator.normal(size=(60, 8))
+    at = np.zeros(8)
+    at[3] = -5.5
+    problem = Problem(
+        residual=generator.normal(size=60),
+        nuisance=does,
+        at=at,
+        base=np.ones(60),
+        labels=_labels(60),
+        used=np.ones(60, dtype=bool),
+    )
+    screen = Screen(problem, {"stiffness": STIFFNESS}, {("stiffness", 0): does / 0.02})
+    best = screen.best_of("stiffness")
+    assert best is not None
+    assert best.hypothesis.parts["stiffness"].terms == ("share@3",)
+    assert best.values["stiffness", "share@3"] == pytest.approx(-5.5 * 0.02, rel=0.02)
+
+
+@pytest.mark.parametrize(("sigmas", "verdict"), [(1.5, "none"), (-6.0, "parameter")])
+def test_a_number_that_is_off_by_more_than_is_known_of_it_is_named(
+    sigmas: float, verdict: str
+) -> None:
+    found = diagnose(Tuned(ring(sigmas * SIGMA, 0.0, 0.0, 0.0)))
+    assert found.verdict == verdict
+    assert found.judgement is not None
+    for cause in found.judgement.causes:
+        assert cause.name == "tone"
+        assert cause.values["share"] == pytest.approx(sigmas * SIGMA, rel=0.02)
