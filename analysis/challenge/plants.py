@@ -15,7 +15,7 @@ from cdpr8.rigfile import Excitation, Rig
 
 Array = NDArray[np.float64]
 
-NAMES = ("mujoco",)
+NAMES = ("mujoco", "outsider")
 FIRST = NAMES[0]
 """The plant where none is named: challenges made before there were two say nothing of it."""
 
@@ -237,9 +237,9 @@ def plant_named(name: str) -> Plant:
     Parameters
     ----------
     name
-        "mujoco" (an optional extra).
+        "mujoco" (an optional extra) or "outsider".
     """
-    doors: dict[str, Callable[[], Plant]] = {"mujoco": _mujoco}
+    doors: dict[str, Callable[[], Plant]] = {"mujoco": _mujoco, "outsider": _outsider}
     return doors[name]()
 
 
@@ -247,3 +247,9 @@ def _mujoco() -> Plant:
     from analysis.challenge.mujoco_plant import MuJoCo
 
     return MuJoCo()
+
+
+def _outsider() -> Plant:
+    from analysis.challenge.outsider.entrant import Outsider
+
+    return Outsider()
