@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from analysis.challenge.grade import Grade
 from analysis.challenge.intervals import bootstrap, wilson
-from analysis.challenge.plant.concealed import catalogue
+from analysis.challenge.plants import FIRST, plant_named
 
 Array = NDArray[np.float64]
 
@@ -144,7 +144,7 @@ def _sizes(grades: Sequence[Grade]) -> list[list[float]]:
 
 
 def _sides(grades: Sequence[Grade]) -> list[bool]:
-    known = catalogue()
+    known = plant_named(FIRST).catalogue()
     hits = []
     for one in _one(grades):
         first = one.causes[0] if one.causes else None

@@ -1,18 +1,20 @@
 """One case: a true machine, the runs made with it and what they conceal."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.challenge.plant.concealed import Concealed, Parts
-from analysis.challenge.plant.machine import Machine, Offset
-from analysis.challenge.plant.plant import FINE_STEP_S, NOTHING, STEP_S, Course, simulate
-from analysis.challenge.plant.record import Measured, Sensing, measure
-from analysis.challenge.plant.sensors import Faults
+from analysis.challenge.plants import (
+    FIRST,
+    Concealed,
+    Course,
+    Measured,
+    Offset,
+    Plant,
+    Sensing,
+    plant_named,
+)
 from cdpr8.rigfile import Excitation, Rig
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,8 @@ class Case:
         True machine less the rig file.
     concealed
         None, one or two effects.
+    plant
+        Which makes its runs.
     """
 
     name: str
@@ -62,6 +66,7 @@ class Case:
     sensing: Sensing
     offset: Offset
     concealed: tuple[Concealed, ...] = ()
+    plant: Plant = field(default_factory=lambda: plant_named(FIRST))
 
     def with_concealed(self, *concealed: Concealed) -> "Case":
         """The same machine and runs, other effects."""
@@ -80,24 +85,19 @@ class Case:
             Of the integration, s; default: one that is not seen beside the noise.
         """
         if step_s is None:
-            step_s = FINE_STEP_S
+            step_s = self.plant.fine_step_s
         return self.recorded(run, self.happened(run, step_s), noise=noise)
 
-    def happened(self, run: PlannedRun, step_s: float = STEP_S) -> Course:
+    def happened(self, run: PlannedRun, step_s: float | None = None) -> Course:
         """What the machine does in one of its runs."""
-        hidden, offset = NOTHING, self.offset
-        for parts in self._parts(run):
-            hidden = hidden.joined(parts.hidden)
-            offset = offset.with_set(**parts.offset)
-        return simulate(run.rig, run.excitation, offset, hidden, step_s)
+        if step_s is None:
+            step_s = self.plant.step_s
+        found: Course = self.plant.happened(run.rig, self.offset, self.concealed, step_s)
+        return found
 
     def recorded(self, run: PlannedRun, course: Course, *, noise: bool = True) -> Measured:
         """What cells and camera make of it."""
-        faults = Faults()
-        for parts in self._parts(run):
-            faults = faults.joined(parts.faults)
-        return measure(course, self.sensing, faults, run.seed, noise=noise)
-
-    def _parts(self, run: PlannedRun) -> list[Parts]:
-        machine = Machine.from_rig(run.rig)
-        return [one.parts(machine) for one in self.concealed]
+        found: Measured = self.plant.recorded(
+            run.rig, self.offset, self.concealed, course, self.sensing, run.seed, noise=noise
+        )
+        return found

@@ -22,6 +22,9 @@ def make(
     out: Folder,
     n: Annotated[int, typer.Option(min=1, help="number of cases")] = 240,
     seed: Annotated[int, typer.Option(min=0, help="all the randomness")] = 0,
+    plant: Annotated[
+        Literal["mujoco", "outsider"], typer.Option(help="which of two independent plants")
+    ] = "mujoco",
     rivals: Annotated[
         bool, typer.Option(help="find out which effects could be told apart (takes half the time)")
     ] = True,
@@ -35,7 +38,8 @@ def make(
 
     Example: analysis challenge make --n 24 --seed 1 challenge
     """
-    _engine_there()
+    if plant == "mujoco":
+        _engine_there()
     from analysis.challenge.draw import KINDS
     from analysis.challenge.make import make as make_all
     from model.jobs import Where
@@ -43,12 +47,14 @@ def make(
     kinds = KINDS if kind == "both" else (kind,)
     where = Where(workers, scheduler)
     with progress("making", n) as step:
-        digest = make_all(out, n, seed, rivals=rivals, kinds=kinds, where=where, step=step)
+        digest = make_all(
+            out, n, seed, plant=plant, rivals=rivals, kinds=kinds, where=where, step=step
+        )
     say(f"{n} cases in {out}; the truth is sealed with SHA-256 {digest}")
 
 
 def _engine_there() -> None:
-    """The plant needs MuJoCo, which is an extra."""
+    """The first plant needs MuJoCo, which is an extra."""
     from importlib.util import find_spec
 
     from cdpr8.errors import UsageError
@@ -56,7 +62,7 @@ def _engine_there() -> None:
     if find_spec("mujoco") is None:
         raise UsageError(
             "the plant needs MuJoCo, which is not installed",
-            remedy="pip install 'cdpr8[challenge]'",
+            remedy="pip install 'cdpr8[challenge]', or --plant outsider",
         )
 
 

@@ -11,14 +11,12 @@ import numpy as np
 
 from analysis.challenge.case import Case
 from analysis.challenge.draw import KINDS, Slot, draw_case, slots
-from analysis.challenge.plant.concealed import Concealed
-from analysis.challenge.plant.machine import Machine
-from analysis.challenge.plant.record import write
+from analysis.challenge.plants import FIRST, Concealed, plant_named
 from analysis.challenge.rig_text import rig_text
 from analysis.challenge.seal import INDEX, seal
 from analysis.challenge.strength import holds, of_strength, tamed
 from analysis.challenge.visibility import Metric, Seen, look
-from analysis.challenge.whitened import STEPS_S, without_release
+from analysis.challenge.whitened import without_release
 from cdpr8.errors import DataError
 from model.jobs import HERE, Job, Row, Where, run_jobs
 
@@ -31,6 +29,7 @@ def make(
     count: int,
     seed: int,
     *,
+    plant: str = FIRST,
     rivals: bool = True,
     kinds: Sequence[str] = KINDS,
     plan: Sequence[Slot] | None = None,
@@ -47,6 +46,8 @@ def make(
         Of cases.
     seed
         All its randomness.
+    plant
+        Which makes the runs, one of `analysis.challenge.plants.NAMES`.
     rivals
         Whether to find out which effects could be told from those concealed: half of the time.
     kinds
@@ -75,15 +76,18 @@ def make(
         )
     folder.mkdir(parents=True, exist_ok=True)
     if plan is None:
-        plan = slots(count, np.random.default_rng(np.random.SeedSequence(seed)), kinds)
+        generator = np.random.default_rng(np.random.SeedSequence(seed))
+        plan = slots(count, generator, kinds, plant_named(plant))
     jobs = [vars(slot) for slot in plan]
     version = metadata.version("cdpr8")
+    # Nothing is said of the first plant: what it makes stays what it was, to the byte.
+    which = {} if plant == FIRST else {"plant": plant}
     rows = {}
     for number, row in run_jobs(
-        partial(_make_block, folder, rivals),
+        partial(_make_block, folder, plant, rivals),
         jobs,
         seed=seed,
-        identity={"challenge": FORMAT, "version": version, "rivals": rivals},
+        identity={"challenge": FORMAT, "version": version, "rivals": rivals} | which,
         results=unfinished,
         where=where,
         block=1,
@@ -91,28 +95,25 @@ def make(
         rows[number] = row
         step()
     cases = [rows[number] for number in range(len(plan))]
-    index = {
-        "format": FORMAT,
-        "seed": seed,
-        "version": version,
+    made = {"format": FORMAT, "seed": seed, "version": version} | which
+    index = made | {
         "cases": {row["case"]: {"kind": row["kind"], "runs": row["runs"]} for row in cases},
     }
-    truth = {"format": FORMAT, "seed": seed, "version": version, "cases": cases}
-    digest = seal(folder, truth)
+    digest = seal(folder, made | {"cases": cases})
     (folder / INDEX).write_text(json.dumps(index, indent=1) + "\n", encoding="utf-8")
     unfinished.unlink()
     return digest
 
 
-def _make_block(folder: Path, rivals: bool, jobs: Sequence[Job]) -> list[Row]:
-    return [_make_case(folder, rivals, job) for job in jobs]
+def _make_block(folder: Path, plant: str, rivals: bool, jobs: Sequence[Job]) -> list[Row]:
+    return [_make_case(folder, plant, rivals, job) for job in jobs]
 
 
-def _make_case(folder: Path, rivals: bool, job: Job) -> Row:
+def _make_case(folder: Path, plant: str, rivals: bool, job: Job) -> Row:
     """Draw a case, size its effects, write its runs; returns the truth."""
     slot = _slot(job.values)
     drawn, sized = np.random.SeedSequence(job.seed, spawn_key=(job.number,)).spawn(2)
-    case = draw_case(slot, drawn)
+    case = draw_case(slot, drawn, plant_named(plant))
     seen: list[Seen] = []
     if case.concealed:
         compared = without_release(case)
@@ -131,7 +132,8 @@ def _make_case(folder: Path, rivals: bool, job: Job) -> Row:
         where = folder / case.name / names[-1]
         _clear(where)
         title = f"{job.seed} {case.name} {names[-1]}"
-        write(where, title, rig_text(run.rig), run.excitation, case.made(run))
+        text, measured = rig_text(run.rig), case.made(run)
+        case.plant.write(where, title, text, run.excitation, case.sensing, measured)
     effects = [
         _told(one, strength, how, case)
         for one, strength, how in zip(case.concealed, slot.strengths, seen, strict=True)
@@ -151,8 +153,9 @@ def _stable(case: Case, metric: Metric) -> Metric:
     """The same metric, by a shorter step where what the case conceals asks for one."""
     if holds(case, metric.known.step_s):
         return metric
-    shorter = [step_s for step_s in STEPS_S if step_s < metric.known.step_s]
-    step_s = next((one for one in shorter if holds(case, one)), STEPS_S[-1])
+    steps_s = case.plant.steps_s
+    shorter = [step_s for step_s in steps_s if step_s < metric.known.step_s]
+    step_s = next((one for one in shorter if holds(case, one)), steps_s[-1])
     return Metric.of(case, step_s)
 
 
@@ -173,7 +176,7 @@ def _clear(folder: Path) -> None:
 def _told(one: Concealed, strength: str, seen: Seen, case: Case) -> dict[str, Any]:
     """One effect as the sealed truth tells it."""
     effect = one.effect
-    parameters = one.told(Machine.from_rig(case.runs[0].rig))
+    parameters = case.plant.told(one, case.runs[0].rig)
     return {
         "effect": effect.name,
         "side": effect.side,

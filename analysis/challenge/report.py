@@ -1,22 +1,17 @@
-"""docs/proof.md: what the challenge came to, written from the score alone."""
+"""docs/proof.md and its like: what the challenge came to, written from the score alone."""
 
 from pathlib import Path
 
 from analysis.challenge.bars import KINDS, Row
+from analysis.challenge.plants import FIRST, plant_named
 from analysis.challenge.score import Score
 
 WORST = 25
 
-HEADER = """# Proof on concealed data
+HEADER = """# Proof on concealed data{}
 
 <!-- written by `analysis challenge score --report`; run it again, do not edit this page -->
 
-Runs were made by an independent plant: MuJoCo moves the platform, and cables, friction, frame,
-drive, cells and camera follow laws of its own, most of which the fitting library does not hold
-(ideal sliders for hysteresis, catenaries for sag, ladders of dashpots for structural loss, several
-vibration modes in two planes). Friction is a bristle in both, and a hook with play a damped slider,
-written and integrated apart: there the library's form is the plant's. Every true machine is off its
-rig file by what the file's sigmas allow. Diagnosis saw the runs alone; the truth was sealed before.
 """
 
 
@@ -40,8 +35,9 @@ def report(score: Score, took_s: float | None = None, remark: str = "") -> str:
     total = sum(one.seconds for one in score.grades) if took_s is None else took_s
     done = sum(one.verdict != "missing" for one in score.grades)
     median = ", ".join(f"{value:.0f} s a {kind}" for kind, value in score.seconds.items())
+    which = "" if score.plant == FIRST else f", by the {score.plant}"
     parts = [
-        HEADER,
+        HEADER.format(which) + plant_named(score.plant).remark,
         f"{len(score.grades)} cases, {done} diagnosed; seed {score.seed}, version {score.version}, "
         f"{total / 3600.0:.1f} h of diagnosis (median {median or 'none'}). Sealed truth: SHA-256 "
         f"`{score.digest}`.",
@@ -66,7 +62,8 @@ def report(score: Score, took_s: float | None = None, remark: str = "") -> str:
 def _options(score: Score) -> str:
     """Those of `make` that are not as usual."""
     kinds = {one.kind for one in score.grades}
-    options = f" --kind {kinds.pop()}" if len(kinds) == 1 else ""
+    options = "" if score.plant == FIRST else f" --plant {score.plant}"
+    options += f" --kind {kinds.pop()}" if len(kinds) == 1 else ""
     effects = [effect for one in score.grades for effect in one.truth]
     if effects and all(effect["separable"] is None for effect in effects):
         options += " --no-rivals"

@@ -12,6 +12,7 @@ import numpy as np
 
 from analysis.challenge.bars import Row, rows, stated
 from analysis.challenge.grade import Grade, grade
+from analysis.challenge.plants import FIRST
 from analysis.challenge.run import REPORTS, answers_of
 from analysis.challenge.seal import open_seal
 
@@ -36,6 +37,8 @@ class Score:
         (concealed, named) -> how often.
     failures
         Of the cases that went wrong, the worst first: what was there, what was said, where.
+    plant
+        Which made the runs.
     """
 
     seed: int
@@ -46,6 +49,7 @@ class Score:
     limits: tuple[dict[str, Any], ...]
     confusion: dict[tuple[str, str], int]
     failures: tuple[dict[str, Any], ...]
+    plant: str = FIRST
 
     @property
     def met(self) -> bool:
@@ -89,6 +93,7 @@ def score(folder: Path) -> Score:
         limits=tuple(limits(done)),
         confusion=confusion(done),
         failures=tuple(failures(grades)),
+        plant=truth.get("plant", FIRST),
     )
 
 
@@ -178,6 +183,7 @@ def _unit(unit: str) -> str:
 def as_dictionary(score: Score) -> dict[str, Any]:
     """The score as JSON holds it."""
     return {
+        "plant": score.plant,
         "seed": score.seed,
         "version": score.version,
         "sealed_sha256": score.digest,

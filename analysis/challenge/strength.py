@@ -3,8 +3,7 @@
 import numpy as np
 
 from analysis.challenge.case import Case
-from analysis.challenge.draw import LOOK_STEP_S
-from analysis.challenge.plant.concealed import Concealed
+from analysis.challenge.plants import Concealed
 from analysis.challenge.visibility import Metric, shows
 
 LIMIT = (10.0, 30.0)
@@ -70,7 +69,7 @@ def of_strength(
 
 def tamed(case: Case) -> Case:
     """The same case, its effects made smaller until the machine holds together."""
-    while case.concealed and not holds(case, LOOK_STEP_S):
+    while case.concealed and not holds(case, case.plant.look_step_s):
         case = case.with_concealed(*(one.resized(0.5 * one.size) for one in case.concealed))
     return case
 

@@ -5,16 +5,15 @@ direction of the change. Numbers of the machine are free within their sigmas: wh
 does not count. All by the plant itself, in straight lines about the true machine.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.challenge.case import Case
-from analysis.challenge.plant.concealed import Concealed, Effect, catalogue
-from analysis.challenge.plant.machine import Machine
-from analysis.challenge.whitened import Reference, longest_step_s, whitened
+from analysis.challenge.plants import Concealed, Effect
+from analysis.challenge.whitened import Reference, whitened
 
 Array = NDArray[np.float64]
 
@@ -68,15 +67,17 @@ class Metric:
             Of the integration, s; default: the longest at which its friction sticks quietly.
         """
         bare = case.with_concealed()
-        known = Reference.of(bare, step_s or longest_step_s(case))
+        longest_s = case.plant.longest_step_s(case.runs[0].rig, case.concealed)
+        known = Reference.of(bare, step_s or longest_s)
         columns = []
         numbers = tuple(_steps(case))
         for name, step in numbers:
             moved = replace(bare, offset=bare.offset.with_added(**{name: SMALL * step}))
             columns.append((whitened(moved, known.step_s) - known.data) / SMALL)
-        for effect in catalogue().values():
+        for name, effect in case.plant.catalogue().items():
             if effect.sound > 0.0:
-                shown = bare.with_concealed(Concealed(effect, SMALL * effect.sound, (), {}))
+                small = case.plant.concealed(name, SMALL * effect.sound, (), {})
+                shown = bare.with_concealed(small)
                 columns.append((whitened(shown, known.step_s) - known.data) / SMALL)
         return cls(known, np.stack(columns, axis=1), numbers)
 
@@ -209,7 +210,7 @@ def slope_of(case: Case, own: Concealed, metric: Metric) -> Array:
     """Change of the data by an effect alone, by its slope where it acts in proportion."""
     known = metric.known
     if own.effect.side == "parameter":
-        sigmas = metric.sigmas(own.parts(Machine.from_rig(case.runs[0].rig)).offset)
+        sigmas = metric.sigmas(case.plant.numbers(own, case.runs[0].rig))
         if sigmas is not None:
             return np.asarray(metric.absorbing @ sigmas)
     share = SLOPE if own.effect.straight else 1.0
@@ -233,28 +234,10 @@ def _rivals(case: Case, metric: Metric) -> dict[str, Array]:
     cables = max((one.cables for one in case.concealed), key=len, default=())
     generator = np.random.default_rng(0)
     found = {}
-    for name, effect in catalogue().items():
-        rival = _alike(effect, cables or tuple(range(1, 9)), generator, case)
+    for name in case.plant.catalogue():
+        rival = case.plant.rival(name, cables or tuple(range(1, 9)), case.runs[0].rig, generator)
         found[name] = slope_of(case, rival, metric)
     return found
-
-
-def _alike(
-    effect: Effect, cables: Sequence[int], generator: np.random.Generator, case: Case
-) -> Concealed:
-    """A rival at its usual size, its further numbers in the middle of their range."""
-    details = dict(effect.draw(generator))
-    if effect.name == "cell_saturation":
-        tension = case.runs[0].rig.cable[cables[0] - 1].pretension_n.value
-        details = {"rest_n": tension, "top_n": tension + 2.0}
-    taken = tuple(cables)
-    if effect.cables == "one":
-        taken = taken[:1]
-    elif effect.cables == "pair":
-        taken = taken[:2] if len(taken) > 1 else (*taken, taken[0] % 8 + 1)
-    elif effect.cables == "none":
-        taken = ()
-    return Concealed(effect, effect.typical, taken, details)
 
 
 def _apart(metric: Metric, change: Array, rival: Array) -> float:

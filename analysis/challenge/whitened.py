@@ -2,26 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.challenge.case import Case
-from analysis.challenge.plant.friction import BRISTLE_LOSS_S
-from analysis.challenge.plant.machine import Machine
-from analysis.challenge.plant.plant import Course
+from analysis.challenge.plants import Course
 
 Array = NDArray[np.float64]
-
-STEPS_S = (1e-3, 5e-4, 2.5e-4)
-"""Of the integration: sensitivities are differences of equal steps, the longest that is stable."""
-
-STABLE = 2.5
-"""Limit of (w h)^2 + 2 c h for friction that sticks; 4 where nothing else were there."""
-
-STRONGEST = 4.0
-STIFFEST_RIVAL_N_PER_M = 6e3
-"""Of the bristles of a rival at its usual size."""
 
 APART = 1e6
 """Stands for tensions, N, and poses, m and rad, of a machine that came apart."""
@@ -67,7 +56,7 @@ def without_release(case: Case) -> Case:
 
 
 def whitened(
-    case: Case, step_s: float = STEPS_S[0], courses: Sequence[Course] | None = None
+    case: Case, step_s: float | None = None, courses: Sequence[Course] | None = None
 ) -> Array:
     """All runs of a case without noise, in units of it, shape (n,).
 
@@ -76,19 +65,21 @@ def whitened(
     case
         What is done, and how it is measured.
     step_s
-        Of the integration, s.
+        Of the integration, s; default: the plant's longest.
     courses
         What the machine does in each run, where it is known.
     """
     if courses is None:
-        courses = [case.happened(run, step_s) for run in case.runs]
+        taken_s = case.plant.steps_s[0] if step_s is None else step_s
+        courses = [case.happened(run, taken_s) for run in case.runs]
     return np.concatenate([_run(case, number, course) for number, course in enumerate(courses)])
 
 
 def _run(case: Case, number: int, course: Course) -> Array:
     if np.isnan(course.pose[-1, 0]):
+        broken: Any = course
         course = replace(
-            course,
+            broken,
             tension_n=np.nan_to_num(course.tension_n, nan=APART),
             pose=np.nan_to_num(course.pose, nan=APART),
         )
@@ -98,21 +89,3 @@ def _run(case: Case, number: int, course: Course) -> Array:
     root = np.linalg.cholesky(measured.covariance)
     pose = np.linalg.solve(root, measured.pose[:, :, None])
     return np.concatenate([tension.ravel(), pose.ravel()])
-
-
-def longest_step_s(case: Case) -> float:
-    """The longest step at which friction of this case, four times as strong, sticks quietly."""
-    machine = Machine.from_rig(case.runs[0].rig)
-    stiff = 0.0
-    for one in case.concealed:
-        if one.effect.size == "coulomb_n":
-            stiff += STRONGEST * one.size / one.details["presliding_m"]
-        elif one.effect.name == "pulley_capstan":
-            stiff += STRONGEST * one.size * machine.pretension.max() / one.details["presliding_m"]
-    stiff = max(stiff, STIFFEST_RIVAL_N_PER_M)
-    _, quickest = machine.softest_and_stiffest_rad_per_s
-    square = quickest**2 * stiff / machine.stiffness.min()
-    for step_s in STEPS_S:
-        if square * step_s * (step_s + 2.0 * BRISTLE_LOSS_S) < STABLE:
-            return step_s
-    return STEPS_S[-1]
