@@ -1,4 +1,4 @@
-"""Screening: which terms of a candidate are worth a look, and numbers that parameters have moved."""
+"""Screening: which terms of a candidate are worth a look; numbers that parameters have moved."""
 
 import numpy as np
 import pytest
