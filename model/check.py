@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdpr8.rigfile.schema import Excitation, Rig
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import Rig
 from model.compiled import Announce
 from model.extras import pack
 from model.kernel import STATES

@@ -7,7 +7,7 @@ from typing import Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from cdpr8.rigfile.schema import Ending, Excitation, Ramp
+from cdpr8.rigfile.excitation import Ending, Excitation, Ramp
 
 Array = NDArray[np.float64]
 Command = tuple[Array, Array, Array]

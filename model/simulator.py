@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdpr8.provenance import versions
-from cdpr8.rigfile.schema import Excitation, Rig
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import Rig
 from model.compiled import Announce, compiled
 from model.kernel import PLATFORM_STATES, STATES
 from model.library.selection import ActiveEffect

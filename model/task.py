@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdpr8.errors import UsageError
-from cdpr8.rigfile.schema import Excitation, Rig
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import Rig
 from model.drive import drive_table
 from model.extras import pack, state_count
 from model.kernel import PLATFORM_STATES, STATES, Extras

@@ -27,6 +27,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from cdpr8.errors import DataError
 from cdpr8.rigfile import schema
+from cdpr8.rigfile.section import Section
 from vision.mounting import unit
 from vision.plate import Plate, Singles
 
@@ -40,7 +41,7 @@ _UNMOUNTED = {"position_m": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "up": [0
 """Stands in for the mounting, which a board in the hand does not have."""
 
 
-class _Charuco(schema.Section):
+class _Charuco(Section):
     dictionary: str
     columns: int = Field(gt=1)
     rows: int = Field(gt=1)
@@ -54,7 +55,7 @@ class _Charuco(schema.Section):
         return self
 
 
-class _Singles(schema.Section):
+class _Singles(Section):
     dictionary: str
     size_m: float = Field(gt=0.0)
     ids: tuple[int, ...] | None = None

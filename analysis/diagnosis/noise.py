@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.system import Bundle
-from cdpr8.rigfile.schema import Excitation
+from cdpr8.rigfile.excitation import Excitation
 
 if TYPE_CHECKING:
     import pandas as pd

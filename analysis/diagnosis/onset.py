@@ -18,7 +18,7 @@ from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording, recording
 from analysis.engine.followed import Followed
 from analysis.engine.ring_samples import Samples
-from cdpr8.rigfile.schema import Ending, Excitation, Ramp
+from cdpr8.rigfile.excitation import Ending, Excitation, Ramp
 from cdpr8.runfolder import Run
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from analysis.engine.tones import RESONANT, resonant
 from analysis.series import about_bend, measured_cables
 from cdpr8.errors import DataError
 from cdpr8.rigfile import Rig
-from cdpr8.rigfile.schema import Excitation
+from cdpr8.rigfile.excitation import Excitation
 from cdpr8.runfolder import POSE_AXES, FrameFlag, Run
 from model import Machine
 from model.rest import tones_hz

@@ -8,7 +8,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
-from cdpr8.rigfile.schema import Excitation
+from cdpr8.rigfile.excitation import Excitation
 from cdpr8.runfolder.records import Node, StartRecord, StopRecord
 from cdpr8.runfolder.tables import (
     SCHEMA_VERSION,

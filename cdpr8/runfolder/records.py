@@ -5,7 +5,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer
 
-from cdpr8.rigfile.schema import Excitation, RegionOfInterest
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import RegionOfInterest
 from cdpr8.runfolder.tables import SCHEMA_VERSION
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cdpr8.rigfile.schema import Excitation, Rig
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import Rig
 from model.batch import simulate_many
 from model.simulation import Simulation
 from model.simulator import simulate

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from cdpr8.rigfile.schema import Excitation, Rig
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import Rig
 from model.simulation import Simulation
 from model.simulator import simulate
 from model.sweep.plan import grid

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from cdpr8.errors import UsageError
-from cdpr8.rigfile.schema import Excitation
+from cdpr8.rigfile.excitation import Excitation
 
 MOST_RUNS = 1_000_000
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import model
 from cdpr8.provenance import versions
-from cdpr8.rigfile.schema import Excitation, Rig
+from cdpr8.rigfile.excitation import Excitation
+from cdpr8.rigfile.schema import Rig
 from model.batch import simulate_many
 from model.compiled import Announce
 from model.jobs import HERE, Row, Where, run_jobs
