@@ -1,5 +1,6 @@
 """The commanded motion, as a rig file and a run's start record state it."""
 
+from collections.abc import Iterable
 from typing import Any, Literal, Self
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
@@ -47,9 +48,17 @@ class Excitation(Section):
         """A law that nobody stated is not stated by writing it down."""
         found = serialize(self)
         if isinstance(found, dict):
-            for name in {"ramp", "ending"} - self.model_fields_set:
+            for name in self._unstated:
                 found.pop(name, None)
         return found
+
+    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
+        """As stated, too: a run's identifier is made of it."""
+        return [one for one in super().__repr_args__() if one[0] not in self._unstated]
+
+    @property
+    def _unstated(self) -> set[str]:
+        return {"ramp", "ending"} - self.model_fields_set
 
     @model_validator(mode="after")
     def _ramps_fit(self) -> Self:
