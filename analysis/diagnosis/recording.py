@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.diagnosis.noise import (
+    ESTIMATED,
     LEAST_REST,
     about_line,
     at_rest,
@@ -250,7 +251,7 @@ def _instants(
             f"{bundles[0].kind}: instants of samples spread by {1e3 * found_s:.2g} ms, as the "
             "noise of what moves tells; the run states nothing of it, and it is counted as noise"
         )
-    return [with_instants(one, found_s) for one in bundles]
+    return [with_instants(one, found_s, ESTIMATED) for one in bundles]
 
 
 def _pose(

@@ -88,6 +88,7 @@ class Bundle:
     base_share: float = 0.0
     tones_hz: tuple[float, ...] = ()
     jitter: Array | None = None
+    jitter_unsure: float = 0.0
     noise_from: int = 0
 
 

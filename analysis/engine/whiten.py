@@ -59,7 +59,7 @@ def noise_leaves(bundles: Sequence[Bundle]) -> float:
 
     A variance that was taken from n samples is off by the square root of 2 / n, and its inverse is
     too large by 2 / n on average: all of a bundle's residuals share that. One standard deviation
-    is allowed.
+    is allowed, and what instants may be less sure than they were estimated to be.
 
     Parameters
     ----------
@@ -71,4 +71,15 @@ def noise_leaves(bundles: Sequence[Bundle]) -> float:
                         for one in bundles])  # fmt: skip
     weights = counts / counts.sum()
     mean = float(weights @ (1.0 / (1.0 - 2.0 / freedom)))
-    return mean + float(np.sqrt(2.0 / counts.sum() + np.sum(weights**2 * 2.0 / freedom)))
+    unsure = np.array([one.jitter_unsure * _of_jitter(one) for one in bundles])
+    spread = float(np.sqrt(2.0 / counts.sum() + np.sum(weights**2 * 2.0 / freedom)))
+    return mean + spread + float(weights @ unsure)
+
+
+def _of_jitter(bundle: Bundle) -> float:
+    """Share of the variance of a bundle's samples that their instants give."""
+    if bundle.jitter is None:
+        return 0.0
+    along = bundle.jitter @ np.linalg.inv(np.linalg.cholesky(bundle.covariance)).T
+    power = (along**2).sum(axis=1)
+    return float(np.mean(power / (1.0 + power)) / len(bundle.names))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.engine.system import Array, Bundle
-from analysis.engine.whiten import Whiten, covariance_over
+from analysis.engine.whiten import Whiten, covariance_over, noise_leaves
 
 NOISE, INSTANT_S, TONE_HZ = 0.01, 5e-4, 20.0
 T_S = np.arange(0.0, 40.0, 0.01)
@@ -60,3 +60,14 @@ def test_over_a_stretch_it_is_the_covariance_that_samples_have() -> None:
     seen = residual.T @ residual / len(T_S)
     assert covariance_over(bundle, inside) == pytest.approx(seen, rel=0.1, abs=2e-5)
     assert covariance_over(replace(bundle, jitter=None), inside) is bundle.covariance
+
+
+def test_instants_that_were_estimated_may_leave_more_than_those_that_are_stated() -> None:
+    bundle, _ = swinging(1)
+    assert bundle.jitter is not None
+    estimated = replace(bundle, jitter_unsure=0.2)
+    more = noise_leaves([estimated]) - noise_leaves([bundle])
+    variance = bundle.jitter[:, 0] ** 2
+    share = np.mean(variance / (variance + bundle.covariance[0, 0]))
+    assert more == pytest.approx(0.2 * share)
+    assert noise_leaves([replace(estimated, jitter=None)]) == noise_leaves([bundle])
