@@ -108,10 +108,10 @@ def search(
         refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
         found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))
         null = next(one for one in found.fitted if not one.hypothesis.parts)
-    moved = _moved(system, found)
+    alone = next((one for one in found.fitted if not one.hypothesis.parts), null)
+    moved = _moved(system, alone) if found.faint else {}
     named = {one.hypothesis.names for one in found.fitted}
-    alone = [one for one in found.fitted if not one.hypothesis.parts][:1]
-    more = [released(refiner, alone[0], name) for name in moved if (name,) not in named]
+    more = [released(refiner, alone, name) for name in moved if (name,) not in named]
     fitted = (*found.fitted, *more)
     return Search(
         system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
@@ -119,14 +119,12 @@ def search(
     )  # fmt: skip
 
 
-def _moved(system: System, found: Found) -> dict[str, float]:
+def _moved(system: System, alone: Fitted) -> dict[str, float]:
     """Numbers that moved too far where nothing left out was led to the noise."""
-    alone = (one for one in found.fitted if not one.hypothesis.parts)
-    null = next(alone, None)
-    if null is None or not (found.faint and null.left < noise_of(system) + REMAINS_ALONE):
+    if not alone.left < noise_of(system) + REMAINS_ALONE:
         return {}
     known = {one.name for one in system.candidates}
-    far = moved_far(system.nuisances, null.point.nuisance)
+    far = moved_far(system.nuisances, alone.point.nuisance)
     return {name: sigmas for name, sigmas in far.items() if name in known}
 
 

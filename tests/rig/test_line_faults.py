@@ -369,7 +369,9 @@ def test_a_terminal_that_stands_still_or_is_gone_keeps_no_command_from_running(
     raise_alarm = OverloadAlarm(stalled, f"echo $CDPR8_CABLE >> {out}")
     raise_alarm(3, "61.00 N")
     raise_alarm(4, "62.00 N")
-    wait_for(lambda: out.exists() and sorted(out.read_text().split()) == ["3", "4"])
+    wait_for(lambda: out.exists() and len(out.read_text().split()) == 2)
+    assert sorted(out.read_text().split()) == ["3", "4"]
+    assert not let_go.is_set()
     let_go.set()
 
 
