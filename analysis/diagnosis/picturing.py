@@ -1,6 +1,7 @@
 """The arrays of the figures, made of a diagnosis by simulating before and after once more."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from analysis.diagnosis.pictures import Array, Channel, Pictures, Record, Stretc
 
 if TYPE_CHECKING:
     from analysis.diagnosis.machine import RecordedMachine
+    from analysis.diagnosis.recording import Recording
     from analysis.engine.diagnosis import Diagnosis
     from analysis.engine.system import Point
 
@@ -76,6 +78,26 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
         first += len(recording.bundles)
     named = judgement is not None and bool(judgement.chosen.hypothesis.parts)
     return Pictures(tuple(records), tuple(channels), named)
+
+
+def with_causes(machine: "RecordedMachine", diagnosis: "Diagnosis") -> list["Recording"] | None:
+    """The runs as the named causes alone make them, all parameters as the rig file has them.
+
+    Parameters
+    ----------
+    machine, diagnosis
+        What was found; None where causes were not asked for.
+    """
+    if diagnosis.judgement is None:
+        return None
+    # Parameters that made up for what is missing would hide it.
+    point = replace(diagnosis.judgement.chosen.point, nuisance=np.zeros(len(machine.nuisances)))
+    found = []
+    for place, recording in enumerate(machine.recordings):
+        made = zip(recording.bundles, _seen(machine, point, place)[0], strict=True)
+        bundles = tuple(replace(bundle, value=value) for bundle, value in made)
+        found.append(replace(recording, bundles=bundles))
+    return found
 
 
 def _seen(

@@ -9,7 +9,8 @@ from typing import Any
 from analysis.diagnosis.guesses import guesses
 from analysis.diagnosis.nuisances import DRIVE_SHARE, LATENCY_S
 from analysis.diagnosis.pictures import FILE, Pictures
-from analysis.diagnosis.picturing import picture
+from analysis.diagnosis.picturing import picture, with_causes
+from analysis.diagnosis.proposing import proposals
 from analysis.diagnosis.ranking import harmonics_of, ranking, ruled_out
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.run import RESULT, RunDiagnosis, one_thread_each
@@ -49,6 +50,11 @@ def complete(found: RunDiagnosis) -> Result:
     """
     with one_thread_each():
         drawn = picture(found.machine, found.diagnosis)
+        proposed = proposals(
+            found.statement,
+            found.recordings,
+            lambda: with_causes(found.machine, found.diagnosis),
+        )
     ranked, out = ranking(found.diagnosis), ruled_out(found.diagnosis)
     said = dict(found.statement)
     said["fit"] = _with_parts(said["fit"])
@@ -62,6 +68,7 @@ def complete(found: RunDiagnosis) -> Result:
     said["ranking"], said["ruled_out"] = ranked, out
     differs = said["verdict"] != "none"
     said["balance"] = sides(found.recordings, said["located"]) if differs else []
+    said["proposal"] = proposed
     said["paper_guesses"] = guesses(drawn, ranked, out) if ranked else {}
     said["missing"] = missing(found.recordings)
     said["provenance"] = {

@@ -98,6 +98,33 @@ class Likely(Open):
     probability: float = Field(ge=0.0, le=1.0)
 
 
+class Amount(Open):
+    """A term of a cable's measured state with its coefficient, in SI units."""
+
+    term: str
+    value: float
+    sigma: float = Field(ge=0.0)
+    unit: str
+
+
+class Proposed(Amount):
+    """A term that sparse regression chose."""
+
+    chosen_share: float = Field(ge=0.0, le=1.0, description="of the resamples")
+    alternatives: list[Amount] = Field(description="what does as well in its place")
+
+
+class Proposal(Open):
+    """A law for what is missing in a cable: a proposal, not a finding."""
+
+    cables: list[int]
+    terms: list[Proposed]
+    explains_share_held_out: float = Field(
+        ge=0.0, le=1.0, description="of the square beyond noise, on stretches not used"
+    )
+    note: str = Field(description="that it is a proposal, and what to check it with")
+
+
 class Statement(Open):
     """A diagnosis."""
 
@@ -112,6 +139,9 @@ class Statement(Open):
     improved_rig: str | None
     balance: list[Balance] = Field(
         default=[], description="runs that tell on which side it is; empty where none can"
+    )
+    proposal: list[Proposal] = Field(
+        default=[], description="where something is unexplained: laws that the data propose"
     )
 
 

@@ -4,7 +4,7 @@ Nothing is said where a run cannot tell: it has no poses or no steady motion, no
 firmly, or one that does not could not have.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from analysis.diagnosis.balance import SEEN, Balance, Residual, balance
 from analysis.diagnosis.recording import Recording
-from analysis.diagnosis.spelling import cables
+from analysis.diagnosis.spelling import cables, listed
 from cdpr8.errors import DataError
 
 Array = NDArray[np.float64]
@@ -62,6 +62,16 @@ def sides(
         if seen is not None:
             found.append({"run": name, **seen})
     return found
+
+
+def in_words(said: Mapping[str, Any]) -> str:
+    """What the three residuals say, run by run where they differ; "": nothing."""
+    runs: dict[str, list[str]] = {}
+    for one in said.get("balance") or []:
+        runs.setdefault(one["means"], []).append(one["run"])
+    if len(runs) < 2:
+        return "".join(runs)
+    return " ".join(f"{listed(names)}: {means}" for means, names in runs.items())
 
 
 def side(found: Balance) -> dict[str, Any] | None:

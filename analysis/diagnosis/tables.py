@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from analysis.diagnosis.proposing import spelled
 from analysis.diagnosis.spelling import listed, number, percent, scaled
 from analysis.diagnosis.titles import parameter_name, rival, short, title, together
 
@@ -58,7 +59,7 @@ class Rows:
 def tables(said: Statement) -> list[Rows]:
     """All tables of a statement that have rows."""
     found = (causes(said), located(said) if not said.get("ranking") else None, balance(said),
-             rivals(said), fit(said), parameters(said), campaign(said))  # fmt: skip
+             proposal(said), rivals(said), fit(said), parameters(said), campaign(said))  # fmt: skip
     return [one for one in found if one is not None and one.rows]
 
 
@@ -141,6 +142,23 @@ def balance(said: Statement) -> Rows:
         "which residual sees it",
         ("run", *columns) if several else columns,
         (*[False] * (len(columns) - (not several)), True),
+        tuple(rows),
+    )
+
+
+def proposal(said: Statement) -> Rows:
+    """Laws proposed for what is missing."""
+    rows = []
+    for one in said.get("proposal") or []:
+        for term in one["terms"]:
+            others = [spelled(other) for other in term["alternatives"]]
+            share = percent(one["explains_share_held_out"])
+            rows.append((listed(one["cables"]), spelled(term), percent(term["chosen_share"]),
+                         share, "\n".join(others)))  # fmt: skip
+    return Rows(
+        "proposed, not found: terms of the missing force",
+        ("cable", "term", "of resamples", "explains, held out", "as well in its place"),
+        (False, False, True, True, False),
         tuple(rows),
     )
 

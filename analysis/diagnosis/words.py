@@ -7,9 +7,11 @@ without diagnosing again.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from analysis.diagnosis import proposing
 from analysis.diagnosis.candidates import FRICTIONS
 from analysis.diagnosis.guesses import in_words as guesses_in_words
 from analysis.diagnosis.phrases import phrase
+from analysis.diagnosis.sides import in_words as which_side
 from analysis.diagnosis.spelling import listed, odds, percent, sentence
 from analysis.diagnosis.titles import parameter_name, short
 
@@ -43,7 +45,8 @@ def sections(said: Statement) -> list[tuple[str, str]]:
     """The paragraph and what belongs beside it: (heading, text), those with nothing left out."""
     found = [
         ("What was found", paragraph(said)),
-        (SIDE, on_which_side(said)),
+        (SIDE, which_side(said)),
+        (proposing.HEADING, proposing.in_words(said)),
         ("What was ruled out", ruled_out(said)),
         ("The paper's own guesses", guesses_in_words(said)),
         ("What would change this verdict", change(said)),
@@ -228,16 +231,6 @@ def _remains(said: Statement) -> list[str]:
         return told
     place = f", strongest in {remains['where']}" if remains.get("where") else ""
     return [*told, f"Something beyond noise and the laws' own uncertainty remains{place}."]
-
-
-def on_which_side(said: Statement) -> str:
-    """What the three residuals say, run by run where they differ; "": nothing."""
-    runs: dict[str, list[str]] = {}
-    for one in said.get("balance") or []:
-        runs.setdefault(one["means"], []).append(one["run"])
-    if len(runs) < 2:
-        return "".join(runs)
-    return " ".join(f"{listed(names)}: {means}" for means, names in runs.items())
 
 
 def ruled_out(said: Statement) -> str:

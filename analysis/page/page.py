@@ -6,6 +6,7 @@ from typing import Any
 
 from analysis.diagnosis.figures import drawings
 from analysis.diagnosis.pictures import Pictures
+from analysis.diagnosis.proposing import HEADING as PROPOSED
 from analysis.diagnosis.spelling import listed, sentence
 from analysis.diagnosis.tables import (
     Rows,
@@ -15,6 +16,7 @@ from analysis.diagnosis.tables import (
     fit,
     located,
     parameters,
+    proposal,
     rivals,
 )
 from analysis.diagnosis.titles import rival, together
@@ -100,7 +102,8 @@ def _words(said: Mapping[str, Any]) -> list[str]:
         # The headline stands at the top already.
         text = one["text"].removeprefix(first).strip()
         if text:
-            more = _table(balance(said)) if one["heading"] == SIDE else ""
+            table = {SIDE: balance, PROPOSED: proposal}.get(one["heading"])
+            more = _table(table(said)) if table else ""
             found.append(_block(one["heading"], f"<p>{escape(text)}</p>{more}"))
     return found
 

@@ -8,9 +8,8 @@ from recorded_by import STILL, by_model
 
 from analysis.diagnosis.balance import balance
 from analysis.diagnosis.recording import Recording
-from analysis.diagnosis.sides import side, sides
+from analysis.diagnosis.sides import in_words, side, sides
 from analysis.diagnosis.tables import balance as table
-from analysis.diagnosis.words import on_which_side
 from cdpr8.rigfile import Excitation
 from cdpr8.rigfile.schema import CellPlace
 from model import ActiveEffect
@@ -100,14 +99,14 @@ def test_a_table_and_a_sentence_tell_it(tmp_path: Path) -> None:
     rows = table(said).rows
     assert [row[1] for row in rows] == ["yes", "no", "yes"]
     assert rows[0][2] == "1 and 2"
-    assert on_which_side(said) == found[0]["means"]
+    assert in_words(said) == found[0]["means"]
     both = {"balance": [*found, {**found[0], "run": "second", "means": "Another."}]}
-    assert on_which_side(both).endswith("second: Another.")
+    assert in_words(both).endswith("second: Another.")
     assert table(both).rows[3][0] == "second"
     assert table({}).rows == ()
-    assert on_which_side({}) == ""
+    assert in_words({}) == ""
 
 
 @pytest.mark.parametrize("verdict", ["none", "explained"])
 def test_an_agreeing_run_has_no_side(verdict: str) -> None:
-    assert on_which_side({"verdict": verdict, "balance": []}) == ""
+    assert in_words({"verdict": verdict, "balance": []}) == ""
