@@ -11,7 +11,8 @@ from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.nuisances import Meaning
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.system import Setting
-from cdpr8.errors import ToolkitError
+from cdpr8 import CABLES
+from cdpr8.errors import RigFileError, ToolkitError
 from cdpr8.rigfile import load_rig
 from model.library.discovery import library
 
@@ -36,15 +37,21 @@ def write_improved(machine: RecordedMachine, diagnosis: Diagnosis, path: Path) -
     """
     run = machine.recordings[0].run
     text = (run.folder / "rig.toml").read_text(encoding="utf-8")
-    data = tomllib.loads(text)
-    _move(data, machine, diagnosis)
-    for name, table in physics(machine, diagnosis).items():
-        data.setdefault("physics", {})[name] = table
-    intrinsics = data.get("camera", {}).get("intrinsics")
+    intrinsics = tomllib.loads(text).get("camera", {}).get("intrinsics")
     if isinstance(intrinsics, str) and (run.folder / intrinsics).is_file():
         (path.parent / intrinsics).write_bytes((run.folder / intrinsics).read_bytes())
-    path.write_text(_HEAD.format(run=run.name) + _spell(data), encoding="utf-8")
-    load_rig(path)
+    for balanced in (True, False):
+        data = tomllib.loads(text)
+        for name, table in physics(machine, diagnosis).items():
+            data.setdefault("physics", {})[name] = table
+        _move(data, machine, diagnosis, balanced=balanced)
+        path.write_text(_HEAD.format(run=run.name) + _spell(data), encoding="utf-8")
+        try:
+            load_rig(path)
+            break
+        except RigFileError:
+            if not balanced:
+                raise
     return path
 
 
@@ -83,8 +90,14 @@ def physics(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, dict[st
     return found
 
 
-def _move(data: dict[str, Any], machine: RecordedMachine, diagnosis: Diagnosis) -> None:
-    """Stiffness, mass and pretension where the fit has them; what else moved stays as it was."""
+def _move(
+    data: dict[str, Any], machine: RecordedMachine, diagnosis: Diagnosis, *, balanced: bool
+) -> None:
+    """Stiffness, mass and pretension where the fit has them; what else moved stays as it was.
+
+    Pretensions that do not carry the weight are no rig file's: where the fit has come to such,
+    they and the mass are what the simulation had them as, effects beside the file's own numbers.
+    """
     assert diagnosis.judgement is not None
     rig = machine.recordings[0].rig
     chosen = diagnosis.judgement.chosen
@@ -97,6 +110,8 @@ def _move(data: dict[str, Any], machine: RecordedMachine, diagnosis: Diagnosis) 
             row = rig.cable[meaning.cable - 1].stiffness_n_per_m
             _set(data["cable"][meaning.cable - 1], "stiffness_n_per_m", row.value * (1 + amount),
                  row.sigma)  # fmt: skip
+        elif meaning.effect in ("pretension", "mass") and not balanced:
+            _add(data, meaning, amount)
         elif meaning.effect == "pretension":
             row = rig.cable[meaning.cable - 1].pretension_n
             _set(data["cable"][meaning.cable - 1], "pretension_n", row.value + amount, row.sigma)
@@ -105,6 +120,18 @@ def _move(data: dict[str, Any], machine: RecordedMachine, diagnosis: Diagnosis) 
             _set(data["platform"], "mass_kg", mass.value * (1.0 + amount), mass.sigma)
         elif meaning.effect == "drive_amplitude":
             _drive(data, diagnosis, meaning, amount)
+
+
+def _add(data: dict[str, Any], meaning: Meaning, amount: float) -> None:
+    """Add to a number of an effect, of one cable or of the platform."""
+    table = data.setdefault("physics", {}).setdefault(meaning.effect, {})
+    known = table.get(meaning.parameter, [0.0] * CABLES if meaning.cable else 0.0)
+    if not meaning.cable:
+        table[meaning.parameter] = round(known + amount, 9)
+        return
+    each = list(known) if isinstance(known, list) else [known] * CABLES
+    each[meaning.cable - 1] = round(each[meaning.cable - 1] + amount, 9)
+    table[meaning.parameter] = each
 
 
 def _drive(data: dict[str, Any], diagnosis: Diagnosis, meaning: Meaning, amount: float) -> None:

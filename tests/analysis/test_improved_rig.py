@@ -1,0 +1,55 @@
+"""`improved.toml`: numbers where the fit has them, whatever it has made of them."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.diagnosis.improve import write_improved
+from analysis.diagnosis.nuisances import Meaning
+from analysis.engine.system import Nuisance
+from cdpr8.rigfile import load_rig, packaged_rig_path
+from model import simulate
+
+PRETENSIONS = tuple(Meaning("pretension", "pretension_offset_n", cable) for cable in range(1, 9))
+
+
+def moved(tmp_path: Path, offsets_n: list[float], mass_share: float) -> Path:
+    """An improved rig file of pretensions and a mass that a fit has moved."""
+    text = packaged_rig_path().read_text(encoding="utf-8")
+    (tmp_path / "rig.toml").write_text(text, encoding="utf-8")
+    run = SimpleNamespace(folder=tmp_path, name="run01")
+    rig = load_rig(tmp_path / "rig.toml")
+    meanings = (*PRETENSIONS, Meaning("mass", "mass_share"))
+    machine: Any = SimpleNamespace(
+        recordings=[SimpleNamespace(run=run, rig=rig)],
+        nuisances=[Nuisance(one.effect, 1.0, "") for one in meanings],
+        meanings=meanings,
+    )
+    found = SimpleNamespace(nuisance=np.array([*offsets_n, mass_share]))
+    judgement = SimpleNamespace(causes=(), chosen=SimpleNamespace(weighed=found))
+    diagnosis: Any = SimpleNamespace(
+        judgement=judgement, calibrated=SimpleNamespace(rotation=np.eye(len(meanings)))
+    )
+    return write_improved(machine, diagnosis, tmp_path / "improved.toml")
+
+
+def test_pretensions_that_carry_the_weight_are_numbers_of_the_rig_file(tmp_path: Path) -> None:
+    before = load_rig()
+    rig = load_rig(moved(tmp_path, [1e-3] * 8, 0.0))
+    assert rig.cable[0].pretension_n.value == pytest.approx(
+        before.cable[0].pretension_n.value + 1e-3
+    )
+    assert not rig.physics
+
+
+def test_pretensions_that_carry_no_weight_are_what_was_simulated(tmp_path: Path) -> None:
+    before, offsets = load_rig(), [3.0, 0.0, -1.0, 0.0, 2.0, 0.0, 0.0, 0.0]
+    rig = load_rig(moved(tmp_path, offsets, 0.2))
+    assert rig.cable[0].pretension_n.value == before.cable[0].pretension_n.value
+    assert rig.physics["pretension"]["pretension_offset_n"] == offsets
+    assert rig.physics["mass"]["mass_share"] == 0.2
+    # It is a machine: it comes to rest elsewhere, and moves.
+    assert np.isfinite(simulate(rig).tension_n).all()
