@@ -28,6 +28,9 @@ class AnswerTimes:
     def began(self, station: Station, asked_s: float, received: Received) -> tuple[float, float]:
         """When an answer began, and how long it was held up.
 
+        One that waits for its value takes up to a period more by itself: what holds it up shows
+        beyond that only.
+
         A node takes about the same time to answer always, and the line never less than the request
         needs: the least time that a node has taken is that of the line and of this program. What
         an answer takes beyond it was held up on the way there or on the way back, and nobody can
@@ -50,7 +53,10 @@ class AnswerTimes:
         """
         received_s = received.last_byte_s - len(received.data) * self._char_s
         took_s = received_s - asked_s - len(station.request) * self._char_s
+        if station.pace is not None:
+            # In a sweep that keeps step with it, all may wait alike.
+            self._least_s.setdefault(station.address, station.pace.least_s)
         least_s = max(0.0, min(took_s, self._least_s.get(station.address, took_s)))
         self._least_s[station.address] = least_s
-        held_up_s = max(0.0, took_s - least_s)
+        held_up_s = max(0.0, took_s - least_s - station.waits_s)
         return received_s - held_up_s + min(held_up_s, JITTER_S) / 2.0, held_up_s

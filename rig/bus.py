@@ -4,28 +4,21 @@ from cdpr8.errors import DeviceError
 from cdpr8.rigfile.schema import Rig
 from rig.amplifier import message
 from rig.amplifier.dialogue import Dialogue
-from rig.amplifier.frame import BadFrameError, FrameFormat, Reading
+from rig.amplifier.frame import BadFrameError, FrameFormat, ValueFormat
 from rig.amplifier.node import NodeClient, Settings, State
+from rig.amplifier.pace import FORMAT, measure_pace
 from rig.amplifier.probe import probe_format
-from rig.amplifier.profile import Identity, profile_of
+from rig.amplifier.profile import Identity, find_profile
 from rig.amplifier.scaling import Scaling
 from rig.answer_times import AnswerTimes
 from rig.assignment import amplifiers
+from rig.due_answer import VALUE_MARGIN_S, WAIT_MARGIN, DueAnswers
 from rig.roll_call import call_the_roll
 from rig.station import Station, Value
-from rig.transport import LineLostError, Received, Transport
+from rig.transport import LineLostError, Transport
 
 STOP_WAIT_S = 0.1
 """Silence after ``;S98;STP;`` (protocol note, section 10)."""
-
-VALUE_MARGIN_S = 0.02
-"""How much longer than its bytes a value may take (protocol note, section 10, timeouts)."""
-
-LATE_S = 0.05
-"""How long an answer that was given up may be held up, and those behind it, once they come."""
-
-BAUD_TOLERANCE = 0.05
-"""How much faster than its name a line may be; beyond 5 % it would not be understood."""
 
 UNTIMED_S = 0.002
 """An answer held up for longer, and for longer than an output period, has no known time."""
@@ -33,6 +26,8 @@ UNTIMED_S = 0.002
 
 class Bus:
     """Eight amplifiers on one line, asked in turn for their newest value (bus mode).
+
+    Those of a type that is not known are asked for a value as text (docs/decisions/0030).
 
     Parameters
     ----------
@@ -72,7 +67,7 @@ class Bus:
         self._asked: Station | None = None
         self._asked_s = 0.0
         self._answers = AnswerTimes(transport.line)
-        self._late_feared = False
+        self._due = DueAnswers(transport)
 
     def start(self) -> tuple[Station, ...]:
         """Silence the bus, identify, configure and start all amplifiers.
@@ -94,8 +89,8 @@ class Bus:
             for cable, amplifier in self._amplifiers.items():
                 node = NodeClient(self._dialogue, amplifier.address)
                 node.identify()
-                states[cable] = node.configure(self._settings)
-        self._measure(message.ALL_MEASURE)
+                states[cable] = self._configure(node, identities[cable])
+                self._measure(identities[cable])
         stations = tuple(
             self._station(cable, identities[cable], states[cable]) for cable in self._amplifiers
         )
@@ -147,7 +142,7 @@ class Bus:
             if fault.raw:
                 self._dialogue.settle()
         else:
-            if self._is_proof:
+            if self._is_proof and station.profile is not None:
                 return True
         node = NodeClient(self._dialogue, station.address)
         try:
@@ -157,9 +152,9 @@ class Bus:
             )
             if Identity.parse(answer) != station.identity:
                 return False
-            if node.configure(self._settings) != station.state:
+            if self._configure(node, station.identity) != station.state:
                 return False
-            self._measure(message.MEASURE)
+            self._measure(station.identity)
             self._take(station)
         except LineLostError:
             raise
@@ -187,13 +182,13 @@ class Bus:
             node = NodeClient(self._dialogue, station.address)
             try:
                 same = node.identify(tries=1) == station.identity
-                if same and node.configure(self._settings) == station.state:
+                if same and self._configure(node, station.identity) == station.state:
+                    self._measure(station.identity)
                     found.append(station)
             except LineLostError:
                 raise
             except DeviceError:
                 self._dialogue.settle()
-        self._measure(message.ALL_MEASURE)
         self._dialogue.settle()
         return tuple(found)
 
@@ -205,15 +200,16 @@ class Bus:
 
     # From here on: what differs where values are triggered (`rig.broadcast`).
 
-    _is_proof = True  # a value proves that its amplifier was not reset: that one would give none
+    _is_proof = True  # a value in bus mode proves that its amplifier was not reset
 
     def _output_format(self, cof: int) -> int:
         """The COF that is written."""
         return cof
 
-    def _measure(self, command: bytes) -> None:
-        """Have amplifiers measure all the time."""
-        self._dialogue.tell(command)
+    def _measure(self, identity: Identity) -> None:
+        """Have the one that is selected measure all the time; of unknown type, it would send."""
+        if find_profile(identity) is not None:
+            self._dialogue.tell(message.MEASURE)
 
     def _probe(self, address: int, _: float) -> FrameFormat:
         """How a node's values look; it has this output period."""
@@ -244,7 +240,7 @@ class Bus:
         if self._asked is not station:
             self._ask(station)
         self._asked = None
-        reading, received = self._fetch(station)
+        reading, received = self._due.fetch(station, self._asked_s)
         asked_s = self._asked_s
         # Whatever can wait is done while the next answer is on the line.
         self._go_on(following)
@@ -253,48 +249,21 @@ class Bus:
             reading,
             asked_s,
             received.last_byte_s,
-            answer_s - station.period_s / 2.0,
-            timed=held_up_s <= max(station.period_s, UNTIMED_S),
+            answer_s - station.age_s,
+            timed=held_up_s <= max(station.period_s - station.waits_s, UNTIMED_S),
         )
-
-    def _fetch(self, station: Station) -> tuple[Reading, Received]:
-        """The answer that is due, where it is one."""
-        transport, length = self.transport, station.format.length
-        chars = len(station.request) + length
-        deadline_s = self._asked_s + chars * transport.line.char_s + VALUE_MARGIN_S
-        received = transport.read(length, deadline_s)
-        self._late_feared |= len(received.data) < length
-        if received.damaged:
-            raise BadFrameError("parity error", received.data)
-        reading = station.format.decode(received.data)
-        if received.last_byte_s > deadline_s:
-            raise BadFrameError("noticed too late to be timed", received.data)
-        self._require_no_other(station, received)
-        return reading, received
-
-    def _require_no_other(self, station: Station, received: Received) -> None:
-        """Refuse an answer that may be to an earlier request.
-
-        An answer that was given up may still come, held up by an adapter or a busy computer, and
-        then stands before that to the next request: from there on each amplifier's value would be
-        taken for the next one's. It comes sooner than the line could have carried question and
-        answer, or another answer comes right behind it.
-        """
-        chars = len(station.request) + len(received.data)
-        took_s = received.last_byte_s - self._asked_s
-        if took_s < (1.0 - BAUD_TOLERANCE) * chars * self.transport.line.char_s:
-            self._late_feared = True
-            raise BadFrameError("it came too soon to be the answer", received.data)
-        if self._late_feared:
-            if behind := self.transport.drain(LATE_S):
-                raise BadFrameError("another answer came behind it", received.data + behind)
-            self._late_feared = False
 
     def _station(self, cable: int, identity: Identity, state: State) -> Station:
         amplifier = self._amplifiers[cable]
-        profile = profile_of(identity)
-        period_s = profile.period_s(self._settings.icr)
-        format_ = self._probe(amplifier.address, period_s)
+        profile, pace = find_profile(identity), None
+        format_: ValueFormat
+        if profile is None:
+            pace, format_ = measure_pace(self._dialogue, amplifier.address, self._nobody), FORMAT
+            period_s = pace.period_s
+            self.waits_s = max(self.waits_s, WAIT_MARGIN * period_s)
+        else:
+            period_s = profile.period_s(self._settings.icr)
+            format_ = self._probe(amplifier.address, period_s)
         return Station(
             cable=cable,
             address=amplifier.address,
@@ -304,4 +273,15 @@ class Bus:
             format=format_,
             scaling=Scaling.of(amplifier, format_, self._zeros.get(cable, 0.0)),
             period_s=period_s,
+            pace=pace,
         )
+
+    def _configure(self, node: NodeClient, identity: Identity) -> State:
+        if find_profile(identity) is None:
+            return node.configure_as_text()
+        return node.configure(self._settings)
+
+    @property
+    def _nobody(self) -> int:
+        """An address that none of the amplifiers has."""
+        return min(set(message.ADDRESSES) - {each.address for each in self._amplifiers.values()})

@@ -94,6 +94,7 @@ def _for_machines(port: str, cable: int | None, node: "Found") -> dict[str, Any]
         "address": node.address,
         "cable": cable,
         "identity": node.identity.text if node.identity else None,
+        "dialect": node.dialect or None,
         "settings": node.settings,
         "own_scaling": node.own_scaling or None,
         "signal_mv_per_v": node.signal_mv_per_v,
@@ -110,7 +111,7 @@ def _table(found: "Sequence[tuple[str, int | None, Found]]") -> "Table":
     where = ports[0] if len(ports) == 1 else f"{len(ports)} ports"
     table = Table(title=f"{len(found)} amplifiers on {where}")
     first = ("address", "cable") if len(ports) == 1 else ("port", "address", "cable")
-    for heading in (*first, "type", "serial", "mV/V", *SHOWN, "own scaling", "trouble"):
+    for heading in (*first, "type", "dialect", "serial", "mV/V", *SHOWN, "own scaling", "trouble"):
         table.add_column(heading)
     for port, cable, node in found:
         who = node.identity
@@ -119,6 +120,7 @@ def _table(found: "Sequence[tuple[str, int | None, Found]]") -> "Table":
             f"{node.address:02d}",
             "-" if cable is None else str(cable),
             who.type if who else "?",
+            node.dialect,
             who.serial_number if who else "?",
             "" if node.signal_mv_per_v is None else f"{node.signal_mv_per_v:+.4f}",
             *(node.settings.get(name, "") for name in SHOWN),

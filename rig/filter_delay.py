@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cdpr8.rigfile.schema import Rig
+from rig.amplifier.profile import Profile
 from rig.station import Station
 
 FIRST_ORDER_SIGMA = 0.2
@@ -38,27 +39,28 @@ class FilterDelay:
     source: Literal["measured", "from the cut-off"]
 
 
-def filter_delay(station: Station, rig: Rig) -> FilterDelay:
+def filter_delay(station: Station, rig: Rig) -> FilterDelay | None:
     """The delay of one cable's amplifier: the one measured, where the rig file has one.
 
-    The amplifier's own comes before that of the bus, and both before the estimate.
+    The amplifier's own comes before that of the bus, and both before the estimate. None where its
+    type is not known, unless it has one of its own: the bus's filter is not written to it.
     """
     amplifier = rig.cable[station.cable - 1].amplifier
     own = None if amplifier is None else amplifier.filter_delay_s
-    measured = rig.bus.filter_delay_s if own is None else own
-    if measured is None:
-        return from_cut_off(station)
-    return FilterDelay(measured.value, measured.sigma, "measured")
+    measured = rig.bus.filter_delay_s if own is None and station.profile is not None else own
+    if measured is not None:
+        return FilterDelay(measured.value, measured.sigma, "measured")
+    return None if station.profile is None else from_cut_off(station, station.profile)
 
 
-def from_cut_off(station: Station) -> FilterDelay:
+def from_cut_off(station: Station, profile: Profile) -> FilterDelay:
     """How late a steady change shows: first-order filter, then the mean over an output period.
 
     First-order behaviour is a fair model of the filter (protocol note, section 8).
     """
-    cut_off_hz = station.profile.cut_offs_hz[int(station.state.settings["ASF"])]
+    cut_off_hz = profile.cut_offs_hz[int(station.state.settings["ASF"])]
     filter_s = 0.0 if cut_off_hz is None else 1.0 / (2.0 * math.pi * cut_off_hz)
-    mean_s = (station.period_s - station.profile.period_s(0)) / 2.0
+    mean_s = (station.period_s - profile.period_s(0)) / 2.0
     return FilterDelay(filter_s + mean_s, FIRST_ORDER_SIGMA * filter_s, "from the cut-off")
 
 
@@ -66,7 +68,10 @@ def doubts(stations: Sequence[Station], rig: Rig) -> list[str]:
     """Measured delays that cannot well be of this filter, in words."""
     words: dict[str, list[str]] = {}
     for station in stations:
-        delay, estimate = filter_delay(station, rig), from_cut_off(station)
+        delay = filter_delay(station, rig)
+        if delay is None or station.profile is None:
+            continue
+        estimate = from_cut_off(station, station.profile)
         least_s = estimate.delay_s / PLAUSIBLE_FACTOR - PLAUSIBLE_S
         most_s = estimate.delay_s * PLAUSIBLE_FACTOR + PLAUSIBLE_S
         if delay.source == "measured" and not least_s <= delay.delay_s <= most_s:

@@ -18,6 +18,7 @@ from rig.broadcast import open_bus
 from rig.bus import Bus
 from rig.command_log import CommandLog
 from rig.command_stream import CommandStream
+from rig.concerns import concerns
 from rig.ending import Recording, disk_fault, reason, require_empty
 from rig.expected_rate import expected_rates
 from rig.filter_delay import doubts
@@ -27,7 +28,6 @@ from rig.reserve import Reserve
 from rig.schedule import run_by_time, run_in_threads
 from rig.scribe import DirectScribe, Scribe, ThreadedScribe
 from rig.start_record import start_record
-from rig.station import concerns
 from rig.stop import StopRequest
 from rig.streaming import StreamingStream, StreamPort, open_ports
 from rig.streaming.port import close_ports

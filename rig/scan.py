@@ -7,7 +7,7 @@ from cdpr8.errors import DeviceError
 from rig.amplifier import message, own_scaling
 from rig.amplifier.dialogue import Dialogue, NoAnswerError
 from rig.amplifier.node import NodeClient
-from rig.amplifier.profile import Identity
+from rig.amplifier.profile import Identity, find_profile
 from rig.amplifier.text_frame import DIGITS_PER_MV_PER_V
 from rig.bus import STOP_WAIT_S
 from rig.transport import Transport
@@ -45,6 +45,14 @@ class Found:
     settings: dict[str, str]
     trouble: str = ""
     signal_mv_per_v: float | None = None
+
+    @property
+    def dialect(self) -> str:
+        """What the toolkit takes it for; empty where it did not tell who it is."""
+        if self.identity is None:
+            return ""
+        profile = find_profile(self.identity)
+        return "unknown: text, polled" if profile is None else profile.name
 
     @property
     def own_scaling(self) -> str:
@@ -102,7 +110,6 @@ def _identify(node: NodeClient, dialogue: Dialogue) -> Identity:
 
 def _signal(node: NodeClient, settings: dict[str, str]) -> float | None:
     """What the cell gives, from the factory curve."""
-    scaled = message.parse_integer(settings["NOV"].encode(), "NOV?") != 0
-    if scaled or own_scaling.deviations(settings):
+    if own_scaling.numbers(settings["NOV"]) != (0,) or own_scaling.deviations(settings):
         return None
     return node.measure() / DIGITS_PER_MV_PER_V

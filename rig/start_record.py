@@ -6,7 +6,7 @@ import uuid
 
 from cdpr8.provenance import versions
 from cdpr8.rigfile import Excitation, Rig
-from cdpr8.runfolder import CameraStart, ClockAnchor, Node, StartRecord
+from cdpr8.runfolder import UNKNOWN, CameraStart, ClockAnchor, Node, StartRecord
 from rig.camera import Camera
 from rig.filter_delay import filter_delay
 from rig.machine import Machine
@@ -71,6 +71,7 @@ def start_record(
 
 def _node(station: Station, zeros: Zeros | None, rig: Rig) -> Node:
     delay = filter_delay(station, rig)
+    known = station.profile
     # On a port of its own a value's time is fitted, and what of it is left is not stated.
     sigma_s = None if rig.bus.streaming else station.period_s / math.sqrt(12.0)
     return Node.model_validate(
@@ -80,15 +81,15 @@ def _node(station: Station, zeros: Zeros | None, rig: Rig) -> Node:
             "identity": station.identity.text,
             "settings": station.state.settings,
             "found": station.state.found,
-            "profile": station.profile.name,
+            "profile": UNKNOWN if known is None else known.name,
             "value_bytes": station.format.length,
             "zero_mv_per_v": station.scaling.zero_mv_per_v,
             "zero_taken": taken(zeros, station.cable),
             "output_period_s": station.period_s,
             "sampling_sigma_s": sigma_s,
-            "filter_delay_s": delay.delay_s,
-            "filter_delay_sigma_s": delay.sigma_s,
-            "filter_delay_from": delay.source,
+            "filter_delay_s": None if delay is None else delay.delay_s,
+            "filter_delay_sigma_s": None if delay is None else delay.sigma_s,
+            "filter_delay_from": UNKNOWN if delay is None else delay.source,
         }
     )
 

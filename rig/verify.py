@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cdpr8 import CABLES
-from cdpr8.runfolder import EventKind, FrameFlag, Run, TensionStatus
+from cdpr8.runfolder import UNKNOWN, EventKind, FrameFlag, Run, TensionStatus
+from rig.amplifier.profile import Identity
+from rig.concerns import by_cables, of_unknown_types
 from rig.finding import Finding, Verdict
 from rig.outcome import REASONS, in_words
-from rig.station import by_cables
 from rig.verify_command import command_log
 
 if TYPE_CHECKING:
@@ -126,17 +127,26 @@ def _skew(run: Run) -> Iterator[Finding]:
 
 
 def _amplifiers(run: Run) -> Iterator[Finding]:
-    """What they do to their digits themselves, as they answered before the run."""
+    """Which are of unknown type, and what all do to their digits themselves, as they answered."""
     asked = [node for node in run.start.nodes if node.found]
     if not asked:
         return
-    told = by_cables((node.cable, node.settings, node.found) for node in asked)
+    told = of_unknown_types(
+        (node.cable, Identity.parse(node.identity.encode()).type, node.output_period_s or 0.0)
+        for node in asked
+        if node.profile == UNKNOWN
+    )
+    told += by_cables((node.cable, node.settings, node.found) for node in asked)
     words = "; ".join(told) or "digits at the factory's curve, no tare in them"
     yield Finding(Verdict.WARN if told else Verdict.OK, "amplifiers", words)
 
 
 def _filter(run: Run) -> Iterator[Finding]:
     """The delay that is taken off where the run is read, and where it comes from."""
+    unknown = [str(node.cable) for node in run.start.nodes if node.filter_delay_from == UNKNOWN]
+    if unknown:
+        words = f"cable {', '.join(unknown)}: not known, and not taken off where the run is read"
+        yield Finding(Verdict.WARN, "delay", words)
     told: dict[str, list[str]] = {}
     for node in run.start.nodes:
         if node.filter_delay_s is not None and node.filter_delay_from is not None:
@@ -145,7 +155,7 @@ def _filter(run: Run) -> Iterator[Finding]:
                 words += f" ± {1e3 * node.filter_delay_sigma_s:.2f}"
             told.setdefault(f"{words} ms, {node.filter_delay_from}", []).append(str(node.cable))
     if told:
-        alike = len(told) == 1
+        alike = len(told) == 1 and not unknown
         words = "; ".join(
             each if alike else f"cable {', '.join(cables)}: {each}" for each, cables in told.items()
         )

@@ -2,7 +2,14 @@
 
 from cdpr8.runfolder.find import find_run, results_folder, sample_data_folder
 from cdpr8.runfolder.read import Run, load_run, read_table
-from cdpr8.runfolder.records import CameraStart, ClockAnchor, Node, StartRecord, StopRecord
+from cdpr8.runfolder.records import (
+    UNKNOWN,
+    CameraStart,
+    ClockAnchor,
+    Node,
+    StartRecord,
+    StopRecord,
+)
 from cdpr8.runfolder.tables import (
     BAD_TENSION,
     POSE_AXES,
@@ -16,6 +23,7 @@ from cdpr8.runfolder.write import RawLog, RunWriter, TableWriter
 __all__ = [
     "BAD_TENSION",
     "POSE_AXES",
+    "UNKNOWN",
     "CameraStart",
     "ClockAnchor",
     "EventKind",

@@ -9,6 +9,9 @@ from cdpr8.rigfile.excitation import Excitation
 from cdpr8.rigfile.schema import RegionOfInterest
 from cdpr8.runfolder.tables import SCHEMA_VERSION
 
+UNKNOWN = "unknown"
+"""What stands in a record for an amplifier's dialect, or its filter's delay, that nobody knows."""
+
 
 class Record(BaseModel):
     """A JSON record; keys of later versions are kept, not refused."""
@@ -35,15 +38,21 @@ class Node(Record):
     )
     zero_mv_per_v: float = Field(default=0.0, description="host-side zero")
     zero_taken: str = Field(default="never", description="when the zero was taken")
-    profile: str | None = Field(default=None, description="the dialect, chosen by the identity")
+    profile: str | None = Field(
+        default=None,
+        description="the dialect, chosen by the identity; unknown: values were asked for as text",
+    )
     value_bytes: int | None = Field(default=None, description="bytes of one value on the line")
     output_period_s: float | None = Field(
-        default=None, description="between two values inside the amplifier, nominal"
+        default=None,
+        description="between two values inside the amplifier, nominal; measured before the run "
+        "where the dialect is unknown",
     )
     sampling_sigma_s: float | None = Field(
         default=None,
         description="standard uncertainty of the instants in tension.csv: on a bus the output "
-        "period over the square root of 12, each amplifier for itself",
+        "period over the square root of 12, each amplifier for itself; at most that, where the "
+        "dialect is unknown",
     )
     filter_delay_s: float | None = Field(
         default=None,
@@ -51,10 +60,10 @@ class Node(Record):
         "never in tension.csv",
     )
     filter_delay_sigma_s: float | None = Field(default=None, description="its standard uncertainty")
-    filter_delay_from: Literal["measured", "from the cut-off"] | None = Field(
+    filter_delay_from: Literal["measured", "from the cut-off", "unknown"] | None = Field(
         default=None,
         description="where it comes from: filter_delay_s of the rig file, or first order from the "
-        "filter's cut-off, with the mean over an output period",
+        "filter's cut-off, with the mean over an output period; unknown: nothing is taken off",
     )
 
 

@@ -23,8 +23,7 @@ TRIGGER = b"S98;MSV?;"
 """Has every node measure its next value and hold it until it is selected (section 9)."""
 
 MEASURE = b"MSV?0;"
-ALL_MEASURE = b";S98;MSV?0;"
-"""Has every node measure all the time."""
+"""Has the node that is selected measure all the time: send it, unless it is in bus mode."""
 
 ALL_STOP = b";S98;STP;"
 
@@ -43,6 +42,20 @@ def query(mnemonic: str) -> bytes:
 def select(address: int) -> bytes:
     """`Sxx;`: the node listens until another S; in bus mode it answers with its newest value."""
     return f"S{address:02d}".encode("ascii") + END
+
+
+def next_value(address: int, nobody: int) -> bytes:
+    """What asks one node for a value where it gives none when it is selected.
+
+    Parameters
+    ----------
+    address
+        Of the node.
+    nobody
+        An address that no node has. It is selected before: where `Sxx;` is lost on the line, the
+        node that was asked before would answer in its place.
+    """
+    return select(nobody) + select(address) + query("MSV")
 
 
 def is_line(answer: bytes) -> bool:

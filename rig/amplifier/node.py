@@ -58,6 +58,15 @@ class Settings:
         )
 
 
+AS_TEXT = {"NOV": 0, "TAS": 1, "ZTR": 0, "TEX": 172, "COF": VALUE_AS_TEXT}
+"""What one of unknown type is set to, where it has the setting and it is another; the format comes
+last, and that it must have.
+"""
+
+LEFT_ALONE = ("FMD", "ASF", "ICR")
+"""What their numbers mean is another thing in each dialect: of an unknown one they are told."""
+
+
 @dataclass(frozen=True)
 class State:
     """A node as it stands before a run; equal to another where it gives the same values.
@@ -147,10 +156,7 @@ class NodeClient:
             A setting is refused, or reads back as something else; or the node has a scaling of its
             own, with which its digits would be another force.
         """
-        # Before the password, which lets a question that loses its ? change what it asks for.
-        own = {mnemonic: self.read(mnemonic) for mnemonic in own_scaling.JUDGED}
-        found = {mnemonic: self.read(mnemonic) for mnemonic in own_scaling.AS_FOUND}
-        self._require_factory_curve(own)
+        own, found = self._as_found()
         read: dict[str, str] = {"NOV": found["NOV"]}
         if message.parse_integer(found["NOV"].encode(), "NOV?") != 0:
             # The scaling on the host stands on the factory curve: NOV=0 (section 6).
@@ -158,6 +164,30 @@ class NodeClient:
         for mnemonic, value in settings.commands():
             self._set(mnemonic, value, read)
         return State(read | own, found)
+
+    def configure_as_text(self) -> State:
+        """Have one of unknown type give values as text, and leave all else as it is.
+
+        Raises
+        ------
+        DeviceError
+            It does not give text, keeps a scaling or a tare of its own, or does not acknowledge.
+        """
+        own, found = self._as_found()
+        read = {mnemonic: self.read(mnemonic) for mnemonic in (*LEFT_ALONE, *AS_TEXT)}
+        for mnemonic, value in AS_TEXT.items():
+            told = own_scaling.numbers(read[mnemonic])
+            if told != (value,) and (told or mnemonic == "COF"):
+                self._set(mnemonic, value, read)
+        return State(read | own, found)
+
+    def _as_found(self) -> tuple[dict[str, str], dict[str, str]]:
+        """What the node does to its digits itself, and what is told of it."""
+        # Before the password, which lets a question that loses its ? change what it asks for.
+        own = {mnemonic: self.read(mnemonic) for mnemonic in own_scaling.JUDGED}
+        found = {mnemonic: self.read(mnemonic) for mnemonic in own_scaling.AS_FOUND}
+        self._require_factory_curve(own)
+        return own, found
 
     def _require_factory_curve(self, own: dict[str, str]) -> None:
         wrong = own_scaling.deviations(own)

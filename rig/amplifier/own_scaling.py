@@ -65,7 +65,9 @@ JUDGED = {
 }
 """A run is refused where one of these is not the factory's."""
 
-AS_FOUND = ("NOV", "TAS", "ZTR", "TAV", "CWT", "RSN")
+SET_FOR_THE_RUN = ("NOV", "TAS", "ZTR")
+
+AS_FOUND = (*SET_FOR_THE_RUN, "TAV", "CWT", "RSN")
 """Settings that are told but refuse no run: the first three are written for the run (not saved),
 TAV is not in gross values, CWT matters only while LWT is measured, RSN makes the digits coarser.
 """
@@ -120,6 +122,7 @@ def concerns(settings: Mapping[str, str], found: Mapping[str, str]) -> list[str]
     told = {name: numbers(answer) for name, answer in found.items()}
     words = []
     untold = [each for each in JUDGED if settings.get(each) == UNKNOWN]
+    untold += [each for each in SET_FOR_THE_RUN if found.get(each) == UNKNOWN]
     if untold:
         words.append(
             f"does not tell its {', '.join(untold)}: the tensions are right only if it has none"

@@ -28,7 +28,7 @@ def probe_format(
     Parameters
     ----------
     dialogue
-        Of the bus, after ``S98;MSV?0;``, or with nothing measuring where values are triggered.
+        Of the bus, after ``MSV?0;``, or with nothing measuring where values are triggered.
     address
         Of the node.
     cof, csm

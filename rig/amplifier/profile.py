@@ -116,20 +116,31 @@ FIT = Profile(
 PROFILES = (AD104, AD101B, FIT)
 
 
+ADD_A_PROFILE = "add a Profile in rig/amplifier/profile.py from its manual"
+
+
+def find_profile(identity: Identity) -> Profile | None:
+    """The dialect of a node; None where none is known for its type."""
+    for profile in PROFILES:
+        if any(re.match(pattern, identity.type) for pattern in profile.types):
+            return profile
+    return None
+
+
 def profile_of(identity: Identity) -> Profile:
-    """The dialect of a node.
+    """The dialect of a node, for what cannot be done without one.
 
     Raises
     ------
     DeviceError
-        No dialect is known for its type; nothing is assumed.
+        None is known for its type; nothing is assumed.
     """
-    for profile in PROFILES:
-        if any(re.match(pattern, identity.type) for pattern in profile.types):
-            return profile
+    profile = find_profile(identity)
+    if profile is not None:
+        return profile
     raise DeviceError(
         f"the amplifier with serial number {identity.serial_number} is a {identity.type!r}, "
         "of which no dialect is known",
         allowed=", ".join(profile.name for profile in PROFILES),
-        remedy="add a Profile in rig/amplifier/profile.py from its manual; nothing is assumed",
+        remedy=f"{ADD_A_PROFILE}; nothing is assumed",
     )

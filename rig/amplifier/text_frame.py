@@ -27,6 +27,9 @@ DIGITS_PER_MV_PER_V = 500_000
 CLAMP = 1_638_399
 """Where the AD104 holds its text values on overload (section 5)."""
 
+MOST_DIGITS = 9_999_999
+"""The end of what seven digits hold, where nothing else is known of the amplifier."""
+
 SEPARATOR = ","
 """Between the parts of a value: TEX172, which is written and read back before a run."""
 
@@ -43,10 +46,13 @@ class TextFormat:
         That each value carries, None where the format has none. Another one is a bad frame.
     status
         Whether three digits of status follow.
+    clamp
+        Where the amplifier holds its values on overload.
     """
 
     address: int | None = None
     status: bool = False
+    clamp: int = CLAMP
 
     @property
     def length(self) -> int:
@@ -77,7 +83,7 @@ class TextFormat:
 
     def encode(self, digits: int, status: int = 0) -> bytes:
         """A value as an amplifier sends it."""
-        value = max(-CLAMP, min(CLAMP, digits))
+        value = max(-self.clamp, min(self.clamp, digits))
         words = [f"{'-' if value < 0 else ' '}{abs(value):07d}"]
         if self.address is not None:
             words.append(f"{self.address:02d}")
@@ -104,7 +110,7 @@ class TextFormat:
         if self.address is not None and int(match["address"]) != self.address:
             raise BadFrameError(f"the value of address {int(match['address']):02d}", raw)
         digits = int(match["value"])
-        return Reading(digits, status, clamped=abs(digits) >= CLAMP)
+        return Reading(digits, status, clamped=abs(digits) >= self.clamp)
 
     @cached_property
     def _pattern(self) -> re.Pattern[bytes]:

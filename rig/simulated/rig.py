@@ -1,7 +1,7 @@
 """Putting the simulated rig together, and its entry point."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from rig.simulated.faults import LineFaults
 from rig.simulated.late import LatePlatform, Platform
 from rig.simulated.node import SimulatedNode
 from rig.simulated.signal import Array, Crystal, NodeSignal
+from rig.simulated.stranger import STRANGE, StrangeNode
 from rig.transport import MemoryTransport, Transport, TwoWire
 
 CRYSTAL_PPM = 50.0
@@ -109,6 +110,7 @@ def assemble(
     *,
     seed: int = 0,
     faults: LineFaults | None = None,
+    strange: Collection[int] = (),
 ) -> Machine:
     """The simulated rig from its parts.
 
@@ -124,8 +126,10 @@ def assemble(
         As in `open_rig`.
     faults
         What the line does to bytes.
+    strange
+        Cables whose amplifier is of a type that nobody knows.
     """
-    nodes = simulated_nodes(rig, platform, clock.monotonic_s(), seed)
+    nodes = simulated_nodes(rig, platform, clock.monotonic_s(), seed, strange)
     # One line for all amplifiers, or one for each.
     groups = [(node,) for node in nodes] if rig.bus.streaming else [nodes]
     lines = [
@@ -158,11 +162,11 @@ def assemble(
 
 
 def simulated_nodes(
-    rig: Rig, platform: Platform, power_on_s: float, seed: int
+    rig: Rig, platform: Platform, power_on_s: float, seed: int, strange: Collection[int] = ()
 ) -> tuple[SimulatedNode, ...]:
-    """The eight amplifiers of a rig file, each on its own crystal."""
+    """A rig file's amplifiers, each on its own crystal; on `strange` cables of no known type."""
     format_ = FrameFormat()
-    nodes = []
+    nodes: list[SimulatedNode] = []
     for cable, amplifier in amplifiers(rig).items():
         draws = np.random.default_rng(np.random.SeedSequence([seed, _NODE_STREAM, cable]))
         crystal = Crystal(
@@ -171,13 +175,13 @@ def simulated_nodes(
         signal = NodeSignal(
             _tension_of(platform, cable),
             Scaling.of(amplifier, format_),
-            FIT,
+            STRANGE if cable in strange else FIT,
             crystal,
             amplifier.noise_n,
             (seed, cable),
         )
         nodes.append(
-            SimulatedNode(
+            (StrangeNode if cable in strange else SimulatedNode)(
                 signal,
                 amplifier.address,
                 amplifier.serial_number or f"SIM{cable:04d}",

@@ -1,6 +1,6 @@
 """Stand-ins for what a recording needs: a platform, a camera, a line with a script."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -121,12 +121,13 @@ def simulated_line(
     faults: LineFaults | None = None,
     clock: VirtualClock | None = None,
     seed: int = 0,
+    strange: Collection[int] = (),
 ) -> tuple[SimulatedBus, MemoryTransport]:
     """The rig's nodes on a line in memory; the run's origin is at once."""
     clock = clock or virtual_clock()
     platform = platform or WavePlatform()
     line = LineSettings(rig.bus.baud, rig.bus.parity)
-    bus = SimulatedBus(simulated_nodes(rig, platform, clock.now_s, seed), line, faults)
+    bus = SimulatedBus(simulated_nodes(rig, platform, clock.now_s, seed, strange), line, faults)
     for node in bus.nodes:
         node.signal.begin(clock.now_s)
     return bus, MemoryTransport(bus, line, clock)
@@ -166,6 +167,7 @@ def record_virtually(
     camera: bool = True,
     seed: int = 1,
     faults: LineFaults | None = None,
+    strange: Collection[int] = (),
 ) -> Recording:
     clock = virtual_clock()
     machine = assemble(
@@ -175,6 +177,7 @@ def record_virtually(
         clock,
         seed=seed,
         faults=faults,
+        strange=strange,
     )
     excitation = motion(duration_s)
     return record(
@@ -201,11 +204,14 @@ def record_spoiled(
     *,
     platform: WavePlatform | None = None,
     seed: int = 3,
+    strange: Collection[int] = (),
 ) -> tuple[Recording, LineFaults]:
     """A recording over a line that spoils bytes, each kind at its rate, from the origin on."""
     faults = LineFaults(np.random.default_rng(seed))
     clock = virtual_clock()
-    machine = assemble(rig, platform or WavePlatform(), None, clock, seed=1, faults=faults)
+    machine = assemble(
+        rig, platform or WavePlatform(), None, clock, seed=1, faults=faults, strange=strange
+    )
     at_origin(machine, lambda _: vars(faults).update(rates))
     recording = record(
         rig, rig_text(), folder, excitation=motion(duration_s), clock=clock, machine=machine
