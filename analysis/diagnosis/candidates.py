@@ -41,6 +41,7 @@ class Policy:
 BRISTLE_LOSS: dict[str, tuple[float, ...]] = {"bristle_loss_s": (5e-4,)}
 
 POLICIES: dict[str, Policy] = {
+    "air_drag": Policy(shapes={"arm_m": (0.15,)}),
     "anchor_play": Policy(shapes={"hold_n": (0.25, 0.8), "slide_s": (1e-3,)}, form_share=0.3),
     "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
     "cable_hysteresis": Policy(shapes={"yield_m": (1e-3,)}),

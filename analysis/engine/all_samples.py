@@ -192,14 +192,17 @@ def forms_of(
     """
     form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
     explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
-    hidden = max(best.misfit - count, 0.0) + DOUBT * np.sqrt(2.0 * count)
+    # How much of what the best leaves is noise, what is rough of it tells, as far as noise may go.
+    most = noise_leaves(refiner.system.bundles)
+    beyond = best.misfit - count * float(np.clip(best.roughness, 1.0, most))
+    hidden = max(beyond, 0.0) + DOUBT * np.sqrt(2.0 * count)
     allowed = count * noise_of(refiner.system)
     unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
     found = []
     for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
         off = min((size * form) ** 2 * explained, hidden) + unexplained
         noise = 1.0 + off / FORMS
-        unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * (best.misfit - count) / noise
+        unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * beyond / noise
         found.append((float(np.log(weight) - unlikely), float(noise)))
     return found
 

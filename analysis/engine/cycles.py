@@ -7,12 +7,14 @@ from the tones themselves; and where they are hardly higher, the recording does 
 however narrow each valley is.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
 from analysis.engine.followed import Followed
+from analysis.engine.in_tune import in_tune, longest_s, tones_by_number
 from analysis.engine.known import Known
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
@@ -88,7 +90,8 @@ def valley(
     information = information_of(system, led)
     turns = _turns(system, led, known, information)
     for _ in range(RIDGES):
-        found = _beyond(system, led, known, _starts(turns, lower=lower))
+        starts = chain(in_tune(system, led, known), _starts(turns, lower=lower))
+        found = _beyond(system, led, known, starts)
         if found is None:
             break
         led, information = found, information_of(system, found)
@@ -116,7 +119,7 @@ def _starts(turns: Sequence[_Turn], *, lower: bool) -> list[Followed]:
 
 
 def _beyond(
-    system: System, led: Followed, known: Known, starts: Sequence[Followed]
+    system: System, led: Followed, known: Known, starts: Iterable[Followed]
 ) -> Followed | None:
     """The first of some valleys that is lower; None: none is."""
     for start in starts:
@@ -132,7 +135,9 @@ def _turns(system: System, led: Followed, known: Known, information: Array) -> l
     """Places where one tone is a turn off, and all else is as likely as it then can be."""
     found: list[tuple[Followed, _Tone, float]] = []
     covariance = np.linalg.pinv(information + known.information, hermitian=True)
-    for moves in _tones_by_number(system, led):
+    if not isinstance(system, Ringing):
+        return []
+    for moves in tones_by_number(system, led, longest_s(system)):
         along = covariance @ moves
         tone = _Tone(moves, float(moves @ along))
         if 0.0 < tone.variance < NARROW_RAD**2:
@@ -149,20 +154,6 @@ def _turns(system: System, led: Followed, known: Known, information: Array) -> l
         _Turn(there, tone, float(left @ left) + known.cost(there.numbers) - here, single)
         for (there, tone, single), left in zip(found, residuals, strict=True)
     ]
-
-
-def _tones_by_number(system: System, led: Followed) -> Array:
-    """By how much one unit of each number moves each tone, shape (tones, numbers), in rad.
-
-    At the end of the longest recording.
-    """
-    if not isinstance(system, Ringing):
-        return np.zeros((0, len(led.numbers)))
-    points, steps = led.neighbours()
-    here = system.tones_hz(led.point)
-    moved = np.array([system.tones_hz(point) - here for point in points]) / steps[:, None]
-    longest_s = max(float(one.t_s[-1] - one.t_s[0]) for one in system.bundles)
-    return np.asarray(2.0 * np.pi * longest_s * moved.T)
 
 
 def _cost(led: Followed, known: Known) -> float:

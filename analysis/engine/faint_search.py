@@ -10,7 +10,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Refiner
-from analysis.engine.screen import Scored, Screen, grouped, groups
+from analysis.engine.screen import Scored, Screen, grouped
 from analysis.engine.state import State
 from analysis.engine.system import Array, Candidate
 
@@ -180,7 +180,7 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
     part = parent.hypothesis.parts[name]
     variant = [dict(one) for one in candidates[name].variants()].index(dict(part.shapes))
     columns = grouped(candidates[name], found.terms[name, variant], part)
-    does = columns @ np.array([parent.values[name, group[0]] for group in groups(part)])
+    does = columns @ parent.weighed.estimate
     # Numbers of shape do nothing to first order about little.
     own = np.hstack([columns, np.zeros((len(does), len(state.free) - columns.shape[1]))])
     problem = replace(found.problem, residual=found.problem.residual - does)

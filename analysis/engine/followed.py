@@ -36,6 +36,9 @@ class Followed:
         they are near what is known of them.
     misfit
         Squared misfit of all samples.
+    roughness
+        Squared misfit of a sample as what no motion makes tells it, on average
+        (`Samples.roughness`).
     effort
         Whole simulations that it took.
     costs
@@ -59,6 +62,7 @@ class Followed:
     telling: float = 1.0
     about: "Followed | None" = None
     misfit: float = np.inf
+    roughness: float = 1.0
     effort: float = 0.0
     costs: Mapping[float, float] = field(default_factory=dict)
     columns: Array | None = None

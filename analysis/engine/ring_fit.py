@@ -121,6 +121,7 @@ def follow_ring(
         telling=float(next((one[1] for one in lefts if one[0] > TELLING), lefts[-1][1])),
         about=about if share < 1.0 or left > FAINT or _far(way.at) else None,
         misfit=float(way.here @ way.here),
+        roughness=samples.roughness(way.here),
         effort=samples.effort,
         costs=costs,
     )

@@ -1,6 +1,6 @@
 """The samples by which a ring is followed, in units of their noise."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -13,6 +13,9 @@ from analysis.engine.whiten import Whiten
 
 FASTEST_HZ = 80.0
 """Faster samples are averaged in blocks down to about this."""
+
+SECOND_DIFFERENCE = 6.0
+"""Variance of second differences of white noise, over its own."""
 
 OVERHEAD = 0.15
 """What the shortest simulation takes, of a whole one."""
@@ -89,6 +92,41 @@ class Samples:
             rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
             parts.append(rest.reshape(-1))
         return np.concatenate(parts)
+
+    def parts(self, residual: Array) -> Iterator[tuple[Array, Array]]:
+        """Times, shape (k,), and residuals, shape (k, m), of one bundle after the other.
+
+        Parameters
+        ----------
+        residual
+            In units of noise, shape (n,).
+        """
+        at = 0
+        for bundle, chosen in zip(self.system.bundles, self._mask, strict=True):
+            block = _block(bundle)
+            rows = int(chosen.sum()) // block
+            size = rows * len(bundle.names)
+            t_s = bundle.t_s[chosen][: rows * block].reshape(-1, block).mean(axis=1)
+            yield t_s, residual[at : at + size].reshape(rows, -1)
+            at += size
+
+    def roughness(self, residual: Array) -> float:
+        """The squared misfit of a sample as what no motion makes tells it, on average.
+
+        That is of second differences: of white noise they are as large as it is, and of anything
+        slow, as an error of form is, next to nothing (von Neumann 1941).
+
+        Parameters
+        ----------
+        residual
+            In units of noise, shape (n,).
+        """
+        total = 0.0
+        for _, part in self.parts(residual):
+            rough = np.diff(part, 2, axis=0)
+            if rough.size:
+                total += part.size * float(np.mean(rough**2)) / SECOND_DIFFERENCE
+        return total / max(residual.size, 1)
 
     @cached_property
     def shares(self) -> Array:

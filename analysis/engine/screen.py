@@ -262,7 +262,8 @@ class Screen:
         at = kept
         for name in new:
             for group in groups(hypothesis.parts[name]):
-                values |= {(name, term): float(weighed.estimate[at]) for term in group}
+                value = magnitude(self.candidates[name], group, float(weighed.estimate[at]))
+                values |= {(name, term): value for term in group}
                 at += 1
         score = weighed.log_evidence + hypothesis.log_prior(self.candidates)
         return Scored(hypothesis, score, weighed, values)
@@ -280,6 +281,18 @@ def grouped(candidate: Candidate, columns: Array, part: Part) -> Array:
         [columns[:, [names.index(one) for one in group]].sum(axis=1) for group in groups(part)],
         axis=1,
     )
+
+
+def magnitude(candidate: Candidate, group: tuple[str, ...], factor: float) -> float:
+    """The magnitude of terms that do so many times what their columns hold.
+
+    What grows as the square of its magnitude was screened at its whole step: there alone a factor
+    is a magnitude.
+    """
+    if not candidate.grows:
+        return factor
+    step = next(term.step for term in candidate.terms if term.name == group[0])
+    return float(np.copysign(np.sqrt(abs(factor * step)), factor))
 
 
 def limits(candidate: Candidate, group: tuple[str, ...]) -> tuple[float, float]:

@@ -215,8 +215,8 @@ class Candidate:
     family
         Laws of one thing: two of a family are less likely both there.
     grows
-        What it does grows faster than its magnitude: it is screened at the whole of its step, for a
-        little of it tells nothing.
+        What it does grows as the square of its magnitude: it is screened at the whole of its step,
+        for a little of it tells nothing.
     """
 
     name: str

@@ -13,6 +13,7 @@ from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
 from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
@@ -90,6 +91,26 @@ def test_what_explains_little_of_what_a_law_leaves_is_lost_in_how_wrong_the_law_
     # Beside a law that leaves no more than noise, as little counts in full.
     exact = replace(law, misfit=1.0 * COUNT)
     assert rise_beside_form(refiner, exact, exact, COUNT, 40.0) == pytest.approx(20.0, rel=0.05)
+
+
+@pytest.mark.parametrize(("roughness", "counts"), [(1.0, False), (1.2, True)])
+def test_what_is_rough_of_what_a_law_leaves_is_noise_and_no_error_of_form(
+    monkeypatch: pytest.MonkeyPatch, refiner: Refiner, roughness: float, counts: bool
+) -> None:
+    monkeypatch.setattr(all_samples, "noise_leaves", lambda _: 1.2)
+    law = Followed(np.zeros(1), state_of(DAMPING, 0.2), misfit=1.2 * COUNT, roughness=roughness)
+    nothing = Followed(np.zeros(1), None, misfit=10.0 * COUNT)
+    rise = rise_beside_form(refiner, law, nothing, COUNT, 0.04 * COUNT)
+    assert (rise > 10.0) == counts
+
+
+def test_roughness_is_that_of_noise_whatever_slow_is_beside_it() -> None:
+    samples = Samples(DAMPED, everything=True)
+    count = len(samples.shares)
+    noise = 1.1 * np.random.default_rng(1).standard_normal(count)
+    slow = 3.0 * np.sin(np.linspace(0.0, 20.0, count))
+    assert samples.roughness(noise) == pytest.approx(1.21, rel=0.1)
+    assert samples.roughness(noise + slow) == pytest.approx(samples.roughness(noise), rel=0.02)
 
 
 def test_nothing_is_led_again_with_what_parameters_do_where_it_starts(

@@ -39,6 +39,27 @@ def test_the_one_number_that_moved_far_is_offered_alone_though_it_does_much() ->
     assert best.values["stiffness", "share@3"] == pytest.approx(-5.5 * 0.02, rel=0.02)
 
 
+def test_what_grows_as_the_square_of_its_magnitude_begins_at_the_root() -> None:
+    """Screened at 0.3, it does a quarter of that where its magnitude is half of it."""
+    generator = np.random.default_rng(1)
+    does, step = 300.0 * generator.normal(size=60), 0.3
+    problem = Problem(
+        residual=0.25 * does,
+        nuisance=np.zeros((60, 0)),
+        at=np.zeros(0),
+        base=np.ones(60),
+        labels=_labels(60),
+        used=np.ones(60, dtype=bool),
+    )
+    term = Term("depth", "depth", "N", "", 0.0, 3.0, step)
+    clipped = Candidate("clipped", "clipped", "cell", (term,), form_share=0.01, grows=True)
+    columns = {("clipped", 0): does[:, None] / step}
+    best = Screen(problem, {"clipped": clipped}, columns).best_of("clipped")
+    assert best is not None
+    assert best.values["clipped", "depth"] == pytest.approx(0.5 * step, rel=0.02)
+    assert best.weighed.estimate == pytest.approx(0.25 * step, rel=0.02)
+
+
 @pytest.mark.parametrize(("sigmas", "verdict"), [(1.5, "none"), (-6.0, "parameter")])
 def test_a_number_that_is_off_by_more_than_is_known_of_it_is_named(
     sigmas: float, verdict: str

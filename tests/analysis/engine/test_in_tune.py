@@ -1,0 +1,99 @@
+"""A faint tone that was led out of tune by many turns, beside one that was not."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.engine.cycles import valley
+from analysis.engine.followed import Followed
+from analysis.engine.in_tune import in_tune
+from analysis.engine.known import Known
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.system import (
+    Array,
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Segment,
+)
+
+TONES_HZ, MIXED = np.array([5.0, 8.3]), np.array([[1.0, 0.3], [-0.5, 1.0]])
+SHARE, SECONDS, NOISE = 0.02, 20.0, 0.02
+T_S = np.arange(0.0, SECONDS, 0.02)
+TRUTH = np.array([0.4, -0.3])
+
+TURNS = 6.0
+"""By which the faint tone is off at the end."""
+
+
+class Duet:
+    """Two tones, each of them moved by both of two numbers; one is loud and one is faint."""
+
+    name = "duet"
+    nuisances: Sequence[Nuisance] = (Nuisance("a", SHARE, "1"), Nuisance("b", SHARE, "1"))
+    candidates: Sequence[Candidate] = ()
+
+    def __init__(self, energies: Sequence[float] = (2e5, 300.0)) -> None:
+        self.heights = np.sqrt(2.0 * np.array(energies) * NOISE**2 / len(T_S))
+        truth = self._one(TRUTH)
+        noisy = truth + NOISE * np.random.default_rng(3).standard_normal(truth.shape)
+        self.bundles = (
+            Bundle(
+                ("y",), ("V",), T_S, noisy, np.eye(1) * NOISE**2,
+                (Segment(0.0, SECONDS, None, 20.0),), record="only", tones_hz=tuple(TONES_HZ),
+            ),
+        )  # fmt: skip
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [reduce([self._one(point.nuisance)]) for point in points]
+
+    def tones_hz(self, point: Point) -> Array:
+        """See `Ringing`."""
+        return self._tones(point.nuisance)
+
+    @staticmethod
+    def _tones(nuisance: Array) -> Array:
+        return np.asarray(TONES_HZ * (1.0 + SHARE * MIXED @ nuisance))
+
+    def _one(self, nuisance: Array) -> Array:
+        turns = 2.0 * np.pi * np.outer(T_S, self._tones(nuisance))
+        return np.asarray(np.cos(turns) @ self.heights)[:, None]
+
+
+def out_of_tune(system: Duet) -> Followed:
+    """Where the loud tone is right, and the faint one some turns off."""
+    off = np.array([0.0, TURNS / (TONES_HZ[1] * SHARE * SECONDS)])
+    start = TRUTH + np.linalg.solve(MIXED, off)
+    return follow_ring(system, start, everything=True, near=True)
+
+
+def test_numbers_are_found_that_bring_one_tone_to_the_ring_that_is_left() -> None:
+    system = Duet()
+    led = out_of_tune(system)
+    right = system.tones_hz(Point(TRUTH))
+    before = system.tones_hz(led.point)
+    assert abs(before[1] - right[1]) * SECONDS > TURNS - 1.0
+    (there,) = in_tune(system, led, Known.priors(led))
+    found = system.tones_hz(there.point)
+    assert found[0] == pytest.approx(before[0], abs=1e-4)
+    assert abs(found[1] - right[1]) * SECONDS < 0.3
+    assert valley(system, led).led.nuisance == pytest.approx(TRUTH, abs=0.02)
+
+
+def test_what_is_in_tune_leaves_no_ring_to_follow() -> None:
+    system = Duet()
+    led = follow_ring(system, TRUTH, everything=True, near=True)
+    assert not list(in_tune(system, led, Known.priors(led)))
+
+
+def test_a_tone_that_is_known_well_is_not_looked_for_elsewhere() -> None:
+    system = Duet()
+    led = out_of_tune(system)
+    surely = Known.priors(led)
+    surely = surely._replace(information=1e4 * surely.information)
+    assert not list(in_tune(system, led, surely))
