@@ -48,6 +48,7 @@ POLICIES: dict[str, Policy] = {
     "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
     "cable_slack": Policy(form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),
+    "cable_stiffening": Policy(shapes={"asymmetry_m": (0.0, 0.02)}),
     # A rig's stiffness may have been measured more slowly than the slowest branch relaxes.
     "cable_structural": Policy(form_share=LINEAR, shapes={"decades_below": (0.0,)}),
     "platform_damping": Policy(form_share=LINEAR),
