@@ -18,7 +18,7 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
 from analysis.engine.way import LEAVES, STRAIN
-from analysis.engine.whiten import noise_leaves
+from analysis.engine.whiten import noise_expected, noise_leaves
 
 DOUBT = 2.0
 """Standard deviations by which the misfit of all samples may hide an error of form."""
@@ -192,8 +192,9 @@ def forms_of(
     """
     form = max((refiner.candidates[one].form_share for one in best.names), default=0.0)
     explained = cost_of(nothing) - min(cost_of(best), cost_of(nothing))
-    # How much of what the best leaves is noise, what is rough of it tells, as far as noise may go.
-    most = noise_leaves(refiner.system.bundles)
+    # How much of what the best leaves is noise, what is rough of it tells, as far as is expected:
+    # strings and jitter are rough as well.
+    most = noise_expected(refiner.system.bundles)
     beyond = best.misfit - count * float(np.clip(best.roughness, 1.0, most))
     hidden = max(beyond, 0.0) + DOUBT * np.sqrt(2.0 * count)
     allowed = count * noise_of(refiner.system)

@@ -66,14 +66,31 @@ def noise_leaves(bundles: Sequence[Bundle]) -> float:
     bundles
         With their samples.
     """
+    weights, freedom = _known_from(bundles)
+    count = sum(one.value.size for one in bundles)
+    unsure = np.array([one.jitter_unsure * _of_jitter(one) for one in bundles])
+    spread = float(np.sqrt(2.0 / count + np.sum(weights**2 * 2.0 / freedom)))
+    return noise_expected(bundles) + spread + float(weights @ unsure)
+
+
+def noise_expected(bundles: Sequence[Bundle]) -> float:
+    """The same, and none allowed for chance: the inverse of a variance is too large on average.
+
+    Parameters
+    ----------
+    bundles
+        With their samples.
+    """
+    weights, freedom = _known_from(bundles)
+    return float(weights @ (1.0 / (1.0 - 2.0 / freedom)))
+
+
+def _known_from(bundles: Sequence[Bundle]) -> tuple[Array, Array]:
+    """Share of all values that each bundle has, and from how many values its noise is known."""
     counts = np.array([one.value.size for one in bundles], dtype=float)
     freedom = np.array([max(one.noise_from - 2.0, 3.0) if one.noise_from else np.inf
                         for one in bundles])  # fmt: skip
-    weights = counts / counts.sum()
-    mean = float(weights @ (1.0 / (1.0 - 2.0 / freedom)))
-    unsure = np.array([one.jitter_unsure * _of_jitter(one) for one in bundles])
-    spread = float(np.sqrt(2.0 / counts.sum() + np.sum(weights**2 * 2.0 / freedom)))
-    return mean + spread + float(weights @ unsure)
+    return counts / counts.sum(), freedom
 
 
 def _of_jitter(bundle: Bundle) -> float:

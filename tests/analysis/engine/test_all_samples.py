@@ -97,7 +97,8 @@ def test_what_explains_little_of_what_a_law_leaves_is_lost_in_how_wrong_the_law_
 def test_what_is_rough_of_what_a_law_leaves_is_noise_and_no_error_of_form(
     monkeypatch: pytest.MonkeyPatch, refiner: Refiner, roughness: float, counts: bool
 ) -> None:
-    monkeypatch.setattr(all_samples, "noise_leaves", lambda _: 1.2)
+    for name in ("noise_expected", "noise_leaves"):
+        monkeypatch.setattr(all_samples, name, lambda _: 1.2)
     law = Followed(np.zeros(1), state_of(DAMPING, 0.2), misfit=1.2 * COUNT, roughness=roughness)
     nothing = Followed(np.zeros(1), None, misfit=10.0 * COUNT)
     rise = rise_beside_form(refiner, law, nothing, COUNT, 0.04 * COUNT)
