@@ -16,7 +16,6 @@ from rig.amplifier import message
 from rig.amplifier.dialogue import SETTLE_S
 from rig.amplifier.frame import BUS_MODE, BadFrameError, FrameFormat
 from rig.amplifier.probe import probe_format
-from rig.amplifier.profile import Identity
 from rig.answer_times import JITTER_S
 from rig.bus import UNTIMED_S, Bus
 from rig.station import Station, Value
@@ -82,7 +81,7 @@ class BroadcastBus(Bus):
     def _output_format(self, cof: int) -> int:
         return cof & ~BUS_MODE
 
-    def _measure(self, identity: Identity) -> None:
+    def _measure(self, command: bytes) -> None:
         """Nothing is measured unless it is triggered."""
 
     def _probe(self, address: int, period_s: float) -> FrameFormat:

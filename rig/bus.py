@@ -84,13 +84,17 @@ class Bus:
         """
         self.stop()
         identities = call_the_roll(self._dialogue, self._rig)
+        together = all(find_profile(each) for each in identities.values())
         states = {}
         with self._dialogue.patiently():  # all have answered, and nothing is recorded yet
             for cable, amplifier in self._amplifiers.items():
                 node = NodeClient(self._dialogue, amplifier.address)
                 node.identify()
                 states[cable] = self._configure(node, identities[cable])
-                self._measure(identities[cable])
+                if not together:
+                    self._measure_alone(identities[cable])
+        if together:
+            self._measure(message.ALL_MEASURE)
         stations = tuple(
             self._station(cable, identities[cable], states[cable]) for cable in self._amplifiers
         )
@@ -154,7 +158,7 @@ class Bus:
                 return False
             if self._configure(node, station.identity) != station.state:
                 return False
-            self._measure(station.identity)
+            self._measure_alone(station.identity)
             self._take(station)
         except LineLostError:
             raise
@@ -177,18 +181,22 @@ class Bus:
             The line is gone again.
         """
         self.stop()
+        together = all(each.profile for each in stations)
         found = []
         for station in stations:
             node = NodeClient(self._dialogue, station.address)
             try:
                 same = node.identify(tries=1) == station.identity
                 if same and self._configure(node, station.identity) == station.state:
-                    self._measure(station.identity)
+                    if not together:
+                        self._measure_alone(station.identity)
                     found.append(station)
             except LineLostError:
                 raise
             except DeviceError:
                 self._dialogue.settle()
+        if together:
+            self._measure(message.ALL_MEASURE)
         self._dialogue.settle()
         return tuple(found)
 
@@ -206,10 +214,14 @@ class Bus:
         """The COF that is written."""
         return cof
 
-    def _measure(self, identity: Identity) -> None:
+    def _measure(self, command: bytes) -> None:
+        """Have amplifiers measure all the time."""
+        self._dialogue.tell(command)
+
+    def _measure_alone(self, identity: Identity) -> None:
         """Have the one that is selected measure all the time; of unknown type, it would send."""
         if find_profile(identity) is not None:
-            self._dialogue.tell(message.MEASURE)
+            self._measure(message.MEASURE)
 
     def _probe(self, address: int, _: float) -> FrameFormat:
         """How a node's values look; it has this output period."""

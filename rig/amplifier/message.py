@@ -25,6 +25,9 @@ TRIGGER = b"S98;MSV?;"
 MEASURE = b"MSV?0;"
 """Has the node that is selected measure all the time: send it, unless it is in bus mode."""
 
+ALL_MEASURE = b";S98;MSV?0;"
+"""Has every node measure all the time."""
+
 ALL_STOP = b";S98;STP;"
 
 
