@@ -379,7 +379,7 @@ def test_the_simulated_one_refuses_what_such_a_node_may_refuse(rig: Rig) -> None
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
-@pytest.mark.parametrize("strange", [{3}, ALL])
+@pytest.mark.parametrize("strange", [{3}, pytest.param(ALL, marks=pytest.mark.slow)])
 def test_a_recording_over_a_pseudo_terminal(
     rig: Rig, tmp_path: Path, strange: Collection[int]
 ) -> None:
