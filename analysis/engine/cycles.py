@@ -133,10 +133,10 @@ def _beyond(
 
 def _turns(system: System, led: Followed, known: Known, information: Array) -> list[_Turn]:
     """Places where one tone is a turn off, and all else is as likely as it then can be."""
-    found: list[tuple[Followed, _Tone, float]] = []
-    covariance = np.linalg.pinv(information + known.information, hermitian=True)
     if not isinstance(system, Ringing):
         return []
+    found: list[tuple[Followed, _Tone, float]] = []
+    covariance = np.linalg.pinv(information + known.information, hermitian=True)
     for moves in tones_by_number(system, led, longest_s(system)):
         along = covariance @ moves
         tone = _Tone(moves, float(moves @ along))

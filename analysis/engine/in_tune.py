@@ -61,25 +61,23 @@ def in_tune(system: System, led: Followed, known: Known) -> Iterator[Followed]:
     """
     if not isinstance(system, Ringing):
         return
-    length_s = longest_s(system)
-    moves, tones = tones_by_number(system, led, length_s), system.tones_hz(led.point)
-    samples = Samples(system, everything=True)
-    for ring in _rings(samples, led, known, moves, tones)[:MOST]:
-        yield _tuned(system, led, known, ring, length_s)
+    length_s, tones = longest_s(system), system.tones_hz(led.point)
+    spread: Array = np.asarray(np.linalg.pinv(known.information, hermitian=True), dtype=float)
+    moves = tones_by_number(system, led, length_s)
+    turns = np.sqrt(np.maximum(np.einsum("jk,kl,jl->j", moves, spread, moves), 0.0))
+    sigmas_hz = turns / (2.0 * np.pi * length_s)
+    for ring in _rings(Samples(system, everything=True), led, tones, sigmas_hz, length_s)[:MOST]:
+        yield _tuned(system, led, spread, ring, length_s)
 
 
 def _rings(
-    samples: Samples, led: Followed, known: Known, moves: Array, tones: Array
+    samples: Samples, led: Followed, tones: Array, sigmas_hz: Array, length_s: float
 ) -> list[_Ring]:
-    """What rings beside a tone, the loudest of each."""
+    """What rings beside a tone, within what is known of it beforehand, the loudest of each."""
     (residual,) = samples.residuals([led.point])
-    spread = np.linalg.pinv(known.information, hermitian=True)
-    line_hz = 1.0 / longest_s(samples.system)
+    line_hz = 1.0 / length_s
     found = []
-    for j, (tone, by_number) in enumerate(zip(tones, moves, strict=True)):
-        sigma_hz = (
-            float(np.sqrt(max(by_number @ spread @ by_number, 0.0))) / (2.0 * np.pi) * line_hz
-        )
+    for j, (tone, sigma_hz) in enumerate(zip(tones, sigmas_hz, strict=True)):
         reach = min(SOUGHT * tone, KNOWN * sigma_hz)
         count = int(4.0 * reach / line_hz)
         offsets = 0.25 * line_hz * np.arange(-count, count + 1)
@@ -109,9 +107,8 @@ def _loudness(samples: Samples, residual: Array, hertz: Array) -> Array:
     return np.asarray((power - channels) / np.sqrt(max(channels, 1)))
 
 
-def _tuned(system: Ringing, led: Followed, known: Known, ring: _Ring, length_s: float) -> Followed:
+def _tuned(system: Ringing, led: Followed, spread: Array, ring: _Ring, length_s: float) -> Followed:
     """Numbers with one tone elsewhere and all others where they are, the likeliest beforehand."""
-    spread = np.linalg.pinv(known.information, hermitian=True)
     tones, turns = system.tones_hz(led.point), 2.0 * np.pi * length_s
     there = led
     for stride in range(1, STRIDES + 1):
