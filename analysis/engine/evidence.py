@@ -154,6 +154,16 @@ class Frame:
         return found
 
 
+def _inverse(matrix: Array) -> Array:
+    """Pseudo-inverse of a symmetric matrix, whatever the units of its numbers, shape (k, k)."""
+    scale = np.sqrt(np.diag(matrix))
+    scale[scale == 0.0] = 1.0
+    units = np.outer(scale, scale)
+    return (
+        np.asarray(np.linalg.pinv(matrix / units) / units, dtype=float) if matrix.size else matrix
+    )
+
+
 def directions(nuisance: Array, base: Array, used: NDArray[np.bool_]) -> Array:
     """Directions among the nuisances that can be seen at all, shape (nuisances, p).
 
@@ -252,7 +262,7 @@ def weigh(
     best = int(np.argmax(np.array(logs) + np.log(weights)))
     log_evidence = float(np.logaddexp.reduce(np.array(logs) + np.log(weights)))
     estimate, matrix, frame, chi2, variance, gain = kept[best]
-    covariance: Array = np.asarray(np.linalg.pinv(matrix), dtype=float) if matrix.size else matrix
+    covariance = _inverse(matrix)
     variances = np.diag(covariance)
     # What does nothing here explains nothing.
     gains = np.divide(

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
-from analysis.engine.evidence import Frame, Problem, directions, weigh
+from analysis.engine.evidence import Frame, Problem, _inverse, directions, weigh
 from analysis.engine.lens import Lens
 from analysis.engine.solve import bounded
 from analysis.engine.system import Bundle, Segment
@@ -113,3 +113,12 @@ def test_an_exact_law_stands_before_parameters_that_imitate_it_far_out(problem: 
         after, {"law": law[:, None]}, {"law": law}, {"law": 0.05}, rounds=1, standing=True
     )
     assert named.log_evidence > nothing.log_evidence + 10.0
+
+
+def test_a_number_is_as_sure_in_whatever_units_it_and_its_neighbours_are() -> None:
+    generator = np.random.default_rng(4)
+    columns, units = generator.normal(size=(40, 2)), np.array([1e-9, 1e4])
+    matrix = columns.T @ columns
+    scaled = _inverse(matrix * np.outer(units, units))
+    assert scaled * np.outer(units, units) == pytest.approx(_inverse(matrix))
+    assert _inverse(matrix) == pytest.approx(np.linalg.inv(matrix))
