@@ -32,8 +32,9 @@ def write_improved(machine: RecordedMachine, diagnosis: Diagnosis, path: Path) -
 
     Raises
     ------
-    ToolkitError
-        The file that was written does not load: a defect of this program.
+    RigFileError
+        The fit has come to numbers that no rig file may hold, such as a stiffness below zero.
+        There is no file then.
     """
     run = machine.recordings[0].run
     text = (run.folder / "rig.toml").read_text(encoding="utf-8")
@@ -51,6 +52,7 @@ def write_improved(machine: RecordedMachine, diagnosis: Diagnosis, path: Path) -
             break
         except RigFileError:
             if not balanced:
+                path.unlink()
                 raise
     return path
 

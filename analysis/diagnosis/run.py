@@ -14,9 +14,15 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
 from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
 from analysis.engine.finder import Tell
+from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 
 RESULT = "diagnose.json"
+
+NOT_IMPROVED = (
+    "there is no improved rig file: the fit has come to numbers that no rig file may hold "
+    "({where}: {what}), which speaks against what is named"
+)
 
 
 @dataclass(frozen=True)
@@ -80,8 +86,11 @@ def diagnose_recordings(
     if results is not None:
         results.mkdir(parents=True, exist_ok=True)
         if diagnosis.judgement is not None and diagnosis.judgement.causes:
-            improved = write_improved(machine, diagnosis, results / "improved.toml")
-            said["improved_rig"] = str(improved)
+            try:
+                improved = write_improved(machine, diagnosis, results / "improved.toml")
+                said["improved_rig"] = str(improved)
+            except RigFileError as error:
+                said["notes"].append(NOT_IMPROVED.format(where=error.where, what=error.what))
         (results / RESULT).write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
     return RunDiagnosis(machine, diagnosis, said, improved)
 

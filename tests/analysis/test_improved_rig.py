@@ -10,25 +10,29 @@ import pytest
 from analysis.diagnosis.improve import write_improved
 from analysis.diagnosis.nuisances import Meaning
 from analysis.engine.system import Nuisance
+from cdpr8.errors import RigFileError
 from cdpr8.rigfile import load_rig, packaged_rig_path
 from model import simulate
 
 PRETENSIONS = tuple(Meaning("pretension", "pretension_offset_n", cable) for cable in range(1, 9))
 
 
-def moved(tmp_path: Path, offsets_n: list[float], mass_share: float) -> Path:
-    """An improved rig file of pretensions and a mass that a fit has moved."""
+def moved(
+    tmp_path: Path, offsets_n: list[float], mass_share: float, stiffness_share: float = 0.0
+) -> Path:
+    """An improved rig file of pretensions, a mass and cable 8's stiffness that a fit has moved."""
     text = packaged_rig_path().read_text(encoding="utf-8")
     (tmp_path / "rig.toml").write_text(text, encoding="utf-8")
     run = SimpleNamespace(folder=tmp_path, name="run01")
     rig = load_rig(tmp_path / "rig.toml")
-    meanings = (*PRETENSIONS, Meaning("mass", "mass_share"))
+    stiffness = Meaning("stiffness", "stiffness_share", 8)
+    meanings = (*PRETENSIONS, Meaning("mass", "mass_share"), stiffness)
     machine: Any = SimpleNamespace(
         recordings=[SimpleNamespace(run=run, rig=rig)],
         nuisances=[Nuisance(one.effect, 1.0, "") for one in meanings],
         meanings=meanings,
     )
-    found = SimpleNamespace(nuisance=np.array([*offsets_n, mass_share]))
+    found = SimpleNamespace(nuisance=np.array([*offsets_n, mass_share, stiffness_share]))
     judgement = SimpleNamespace(causes=(), chosen=SimpleNamespace(weighed=found))
     diagnosis: Any = SimpleNamespace(
         judgement=judgement, calibrated=SimpleNamespace(rotation=np.eye(len(meanings)))
@@ -53,3 +57,9 @@ def test_pretensions_that_carry_no_weight_are_what_was_simulated(tmp_path: Path)
     assert rig.physics["mass"]["mass_share"] == 0.2
     # It is a machine: it comes to rest elsewhere, and moves.
     assert np.isfinite(simulate(rig).tension_n).all()
+
+
+def test_numbers_that_no_rig_file_may_hold_leave_none(tmp_path: Path) -> None:
+    with pytest.raises(RigFileError, match="stiffness_n_per_m: value -"):
+        moved(tmp_path, [0.0] * 8, 0.0, -1.03)
+    assert not (tmp_path / "improved.toml").exists()
