@@ -63,7 +63,7 @@ EFFECT = Effect(
     "proportion to amplitude; like Kelvin-Voigt at one frequency",
     parameters=(
         Parameter("loss_factor", "1", 0.03, 0.0, 0.2, "eta", magnitude=True),
-        Parameter("decades_below", "1", 0.0, -0.5, 2.0, "D, of loss below 0.2 Hz"),
+        Parameter("decades_below", "1", 0.0, -2.0, 2.0, "D, of loss below 0.2 Hz"),
     ),
     states=tuple(
         State(f"q{j}", "m", f"elongation of dashpot {j}", follows=True) for j in range(1, 6)
