@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.differences import differences
 from analysis.engine.followed import Followed
 from analysis.engine.in_tune import in_tune, longest_s, tones_by_number
 from analysis.engine.known import Known
@@ -106,9 +107,9 @@ def information_of(system: System, led: Followed) -> Array:
     """What samples tell of free numbers about where they were led to, shape (numbers, numbers)."""
     if led.information is not None:
         return led.information
-    points, steps = led.neighbours()
-    here, *others = Samples(system, everything=True).residuals([led.point, *points])
-    columns = (here - np.stack(others)) / steps[:, None]
+    samples = Samples(system, everything=True)
+    (here,) = samples.residuals([led.point])
+    columns, _ = differences(samples, led, here)
     return np.asarray(columns @ columns.T)
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.engine.differences import differences
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.followed import Followed
 from analysis.engine.lens import Labels
@@ -113,24 +114,25 @@ def faint(
     followed = followed.about or followed
     samples = Samples(system, everything=True, share=followed.telling)
     (here,) = samples.residuals([followed.point])
-    points, steps = followed.neighbours()
-    numbers, count = len(steps), len(followed.nuisance)
     # What nuisances do is known already, where they were led to just there.
     known = np.zeros((0, len(here)))
     if followed.columns is not None and followed.fresh and followed.telling == 1.0:
         known = followed.columns
+    own, steps = differences(samples, followed, here, known=len(known))
+    numbers, count = len(steps), len(followed.nuisance)
     kept = _kept(near, followed, here)
     same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
     asked = _asked(candidates, followed.point, {*same})
     places = [place for place in asked if place not in kept]
-    points = [*points[len(known) :], *(asked[place][0] for place in places)]
-    sizes = np.array([*steps[len(known) :], *(asked[place][1] for place in places)])
+    points = [asked[place][0] for place in places]
+    sizes = np.array([asked[place][1] for place in places])
     rows: list[Array] = []
     for first in range(0, len(points), BATCH):
         rows += [here - one for one in samples.residuals(points[first : first + BATCH])]
         if progress is not None:
             progress(len(rows), len(points))
-    changes = np.concatenate([known, np.array(rows).reshape(-1, len(here)) / sizes[:, None]])
+    does = np.array(rows).reshape(-1, len(here)) / sizes[:, None]
+    changes = np.concatenate([known, own, does])
     seen = _Seen(followed.telling, here, dict(zip(places, changes[numbers:], strict=True)))
     old = [place for place in asked if place in kept]
     if old:
@@ -145,10 +147,10 @@ def faint(
     terms = _terms(candidates, followed.point, numbers_do, same)
     for place, (name, v, k) in enumerate(places):
         terms[name, v][:, k] = inside[:, numbers + place]
-    own: dict[str, Array] = {}
+    on: dict[str, Array] = {}
     if followed.state is not None:
         for name in followed.state.hypothesis.names:
-            own[name] = inside[:, [count + k for k in followed.state.places(name)]]
+            on[name] = inside[:, [count + k for k in followed.state.places(name)]]
     used, base = np.ones(size, dtype=bool), np.full(size, noise)
     rotation = directions(nuisance, base, used)
     problem = Problem(
@@ -163,7 +165,7 @@ def faint(
         seen = near.seen
     elif changes.size > KEPT:
         seen = replace(seen, changes={})
-    return Faint(followed, problem, terms, own, rotation, seen)
+    return Faint(followed, problem, terms, on, rotation, seen)
 
 
 def _asked(

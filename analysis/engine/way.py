@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.differences import differences
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
@@ -187,18 +188,15 @@ class Way:
 
     def _differences(self) -> None:
         """What every number does here; where nuisances' was lent, only what is on is simulated."""
-        points, self._steps = self.at.neighbours()
         columns = np.zeros((0, len(self.here)))
         self._serves = self._lent is not None and self._seen == 1.0
         if self._lent is not None and self._serves:
             columns, self._lent = self._lent.copy(), None
-        known = len(columns)
-        self._fresh = known == 0
-        if len(points) > known:
-            rows = np.stack(self._samples.residuals(points[known:], self._seen))
-            own = (self.here - rows) / self._steps[known:, None]
-            columns = np.concatenate([columns, own])
-        self._columns = self._last = columns
+        self._fresh = len(columns) == 0
+        own, self._steps = differences(
+            self._samples, self.at, self.here, self._seen, known=len(columns)
+        )
+        self._columns = self._last = np.concatenate([columns, own])
 
     def _step(self, inside: NDArray[np.bool_], best: float) -> float:
         """By how much the cost fell; nothing: there is no step."""

@@ -1,0 +1,57 @@
+"""What each free number does to all samples, by differences as fine as each asks for."""
+
+import numpy as np
+
+from analysis.engine.followed import Followed
+from analysis.engine.ring_samples import Samples
+from analysis.engine.system import Array
+
+COARSE = 1.5
+"""A difference that moves all samples together by more than this, in units of noise, may have
+turned the phase too far: what it is off by grows as its square."""
+
+
+def differences(
+    samples: Samples, at: Followed, here: Array, share: float = 1.0, known: int = 0
+) -> tuple[Array, Array]:
+    """What one unit of each free number does to all samples.
+
+    A tone of which one standard deviation of a number takes many turns is moved by less, and both
+    ways: the error is then of third order.
+
+    Parameters
+    ----------
+    samples
+        By which it is told.
+    at, here
+        About where, and what is left there, shape (n,).
+    share
+        Of the time that is simulated.
+    known
+        So many of the numbers, the first, are not asked.
+
+    Returns
+    -------
+    Array, Array
+        Columns, shape (numbers - known, n), and the differences of all numbers, shape (numbers,).
+    """
+    points, steps = at.neighbours()
+    if len(points) == known:
+        return np.zeros((0, len(here))), steps
+    rows = np.stack(samples.residuals(points[known:], share))
+    columns = np.asarray((here - rows) / steps[known:, None])
+    far = np.linalg.norm(here - rows, axis=1)
+    ends: list[Followed] = []
+    redone: list[int] = []
+    for k in np.flatnonzero(far > COARSE):
+        change = np.zeros(len(steps))
+        change[known + k] = steps[known + k] * COARSE / far[k]
+        ends += [at.moved(change, sign) for sign in (1.0, -1.0)]
+        redone.append(k)
+    if redone:
+        left = samples.residuals([one.point for one in ends], share)
+        for i, k in enumerate(redone):
+            (up, down), (above, below) = ends[2 * i : 2 * i + 2], left[2 * i : 2 * i + 2]
+            width = up.numbers[known + k] - down.numbers[known + k]
+            columns[k] = (below - above) / width
+    return columns, steps
