@@ -131,7 +131,7 @@ def by_ring(
         single = [fitted_there(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
-    first = _abreast(single) if nothing.left < FAINT else single[:1]
+    first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)
     if enough is not None:
         led.lead_first(first)
     if not near and not led.ended:
@@ -193,6 +193,11 @@ def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
     start[of[name]] = 0.0
     fitted = refiner.at(state, refiner.directions_of(start))
     return [replace(fitted, point=Followed(start, state).point)]
+
+
+def _of_one_kind(single: Sequence[Fitted]) -> list[Fitted]:
+    """The likeliest single cause, in other places too, where these are promised."""
+    return [one for one in single if one.hypothesis.names == single[0].hypothesis.names]
 
 
 def _abreast(single: Sequence[Fitted]) -> list[Fitted]:

@@ -43,7 +43,7 @@ def differences(
     far = np.linalg.norm(here - rows, axis=1)
     ends: list[Followed] = []
     redone: list[int] = []
-    for k in np.flatnonzero(far > COARSE):
+    for k in np.flatnonzero(far > COARSE).tolist():
         change = np.zeros(len(steps))
         change[known + k] = steps[known + k] * COARSE / far[k]
         ends += [at.moved(change, sign) for sign in (1.0, -1.0)]

@@ -20,8 +20,9 @@ SINGLES, PARENTS, PAIRS = 8, 3, 6
 ASKS = 4.0
 """One cause more is worth a try where the ring promises this rise of the score."""
 
-NEARLY = 0.9
-"""All places alike are followed where they promise this share of what the best places do."""
+NEARLY, AHEAD = 0.9, 8.0
+"""All places alike are followed where they promise this share of what the best places do; those as
+well where they are so far ahead."""
 
 
 def faint_search(
@@ -116,8 +117,8 @@ def _promises(found: Faint, refiner: Refiner, explains: float) -> tuple[float, l
     least = nothing + ASKS + explains * _beyond_noise(found)
     best = [one for one in _best(screen, chosen, screen.on) if one.log_score > least]
     if found.followed.telling < 1.0:
-        simpler = (_simpler(screen, one, nothing) for one in best)
-        best = sorted(simpler, key=lambda one: -one.log_score)
+        both = (each for one in best for each in _simpler(screen, one, nothing))
+        best = sorted(both, key=lambda one: -one.log_score)
     return nothing, best
 
 
@@ -142,19 +143,22 @@ def _beyond_noise(found: Faint) -> float:
     return 0.5 * max(float(np.sum(residual**2 / base)) - len(residual), 0.0)
 
 
-def _simpler(screen: Screen, scored: Scored, nothing: float) -> Scored:
-    """The same in all places alike, where that promises nearly as much.
+def _simpler(screen: Screen, scored: Scored, nothing: float) -> list[Scored]:
+    """The same in all places alike, where that promises nearly as much; beside it, where not.
 
-    Over a short stretch, and to first order, which places are on is no more than a guess.
+    Over a short stretch, and to first order, which places are on is no more than a guess: where it
+    is worth something, both are to be led.
     """
     (name,) = set(scored.hypothesis.names) - set(screen.on.names)
     candidate = screen.candidates[name]
     every = tuple(one.name for one in candidate.terms)
     if not candidate.shareable or len(every) < 2 or candidate.together:
-        return scored
+        return [scored]
     part = Part(every, True, scored.hypothesis.parts[name].shapes)
     alike = screen.with_part(name, part)
-    return alike if alike.log_score - nothing > NEARLY * (scored.log_score - nothing) else scored
+    if alike.log_score - nothing <= NEARLY * (scored.log_score - nothing):
+        return [scored]
+    return [scored, alike] if scored.log_score > alike.log_score + AHEAD else [alike]
 
 
 def nuisances_of(found: Faint, scored: Scored) -> Array:

@@ -174,6 +174,7 @@ class FollowedSearch(RivalLeader):
     def _lead_beside(self) -> None:
         """From the best on: rivals, one cause more, one less."""
         for _ in range(self._most_causes):
+            self._lead_freed()
             self._one_less(self._best)
             waiting = not self._lead_rivals()
             best = self._best

@@ -6,7 +6,7 @@ be left out: it is there, uncertain, and the fit has moved it. Where it moved by
 as likely off as not.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from analysis.engine.hypothesis import LOG_ODDS, Hypothesis, Part
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import Array, Nuisance
+from analysis.engine.system import Array, Candidate, Nuisance, System
 
 STANDS_OUT = 2.0
 """Of its numbers those that moved by more than this are released, or the one that moved most."""
@@ -73,6 +73,33 @@ def rise_of(sigmas: float, temper: float) -> float:
     return 0.5 * (sigmas**2 - EVEN**2) - LOG_ODDS * (temper - 1.0)
 
 
+def freed(
+    system: System, candidates: Mapping[str, Candidate], at: Followed, cause: str
+) -> Followed:
+    """The same place, with what a cause's numbers have moved by as a cause that is on.
+
+    Parameters
+    ----------
+    system, candidates
+        What is simulated, and its candidates by name.
+    at
+        Where; the cause is not on there.
+    cause
+        A candidate whose numbers are nuisances, and have moved.
+    """
+    nuisance = at.nuisance.copy()
+    own = [i for i, one in enumerate(system.nuisances) if one.cause == cause and one.term]
+    far = [i for i in own if abs(nuisance[i]) > STANDS_OUT]
+    far = far or [max(own, key=lambda i: abs(nuisance[i]))]
+    known = {i: system.nuisances[i] for i in far}
+    values = {(cause, one.term or ""): float(nuisance[i] * one.sigma) for i, one in known.items()}
+    hypothesis = Hypothesis() if at.state is None else at.state.hypothesis
+    hypothesis = hypothesis.plus(cause, Part(tuple(one.term or "" for one in known.values())))
+    nuisance[far] = 0.0
+    on = {} if at.state is None else at.state.term_values()
+    return Followed(nuisance, State.at(hypothesis, on | values, candidates))
+
+
 def released(refiner: Refiner, null: Fitted, cause: str) -> Fitted:
     """The hypothesis that a cause's numbers are off, led from where they had moved by themselves.
 
@@ -87,17 +114,9 @@ def released(refiner: Refiner, null: Fitted, cause: str) -> Fitted:
     cause
         A candidate whose numbers are nuisances, and have moved.
     """
-    system, at = refiner.system, null.point.nuisance.copy()
-    own = [i for i, one in enumerate(system.nuisances) if one.cause == cause and one.term]
-    far = [i for i in own if abs(at[i]) > STANDS_OUT] or [max(own, key=lambda i: abs(at[i]))]
-    known = {i: system.nuisances[i] for i in far}
-    values = {(cause, one.term or ""): float(at[i] * one.sigma) for i, one in known.items()}
-    hypothesis = Hypothesis({cause: Part(tuple(one.term or "" for one in known.values()))})
-    at[far] = 0.0
-    led = follow_ring(
-        system, at, State.at(hypothesis, values, refiner.candidates),
-        everything=True, near=True, most=EFFORT,
-    )  # fmt: skip
+    system = refiner.system
+    start = freed(system, refiner.candidates, Followed(null.point.nuisance, None), cause)
+    led = follow_ring(system, start.nuisance, start.state, everything=True, near=True, most=EFFORT)
     assert led.state is not None
     there = refiner.at(led.state, refiner.directions_of(led.nuisance))
     point = Followed(led.nuisance, led.state).point

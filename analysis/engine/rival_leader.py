@@ -11,6 +11,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.judge import NOISE
 from analysis.engine.kin import kin_alike, kin_left, lead_from, lead_instead
 from analysis.engine.leader import Leader
+from analysis.engine.moved import freed
 from analysis.engine.places import is_placed, placed_again
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
@@ -20,6 +21,9 @@ EXCHANGES = 2
 
 PLACINGS = 2
 """From other places, places are asked once more: so often at a time."""
+
+BENT = 100.0
+"""Parameters of one kind whose squares come to more than this, in sigmas, stand for a cause."""
 
 CLOSE = 60.0
 """What came as close as this, in squared misfit, may have been in places that are as wrong."""
@@ -102,6 +106,27 @@ class RivalLeader(Leader):
                 close = (one for one in self._led if cost_of(one) < cost_of(best) + CLOSE)
                 self._misplaced |= {one.names for one in close if one.names != best.names}
                 self._tried -= self._misplaced
+
+    def _lead_freed(self) -> None:
+        """Where parameters of one kind were bent far, they stand for a cause: it is led as one.
+
+        Nothing is searched for it: the simulation is the same, and what it costs is not.
+        """
+        best, candidates = self._best, self._refiner.candidates
+        if best.state is None or not best.to_end or len(best.names) >= self._most_causes:
+            return
+        families = {candidates[name].family for name in best.names} - {""}
+        bent: dict[str, float] = {}
+        for one, sigmas in zip(self._system.nuisances, best.nuisance, strict=True):
+            if one.cause in candidates and one.term and one.cause not in best.names:
+                bent[one.cause] = bent.get(one.cause, 0.0) + float(sigmas) ** 2
+        name = max(bent, key=lambda one: bent[one], default="")
+        if bent.get(name, 0.0) < BENT or candidates[name].family in families:
+            return
+        start = freed(self._system, candidates, best, name)
+        assert start.state is not None
+        if start.names not in {one.names for one in self._led if one.to_end}:
+            self._keep(lead_from(self._system, best, start.state, start.nuisance))
 
     def _lead_rivals(self, *, last: bool = False) -> bool:
         """Kin of what is on are led, and what promises as much as it does.

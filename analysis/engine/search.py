@@ -1,13 +1,14 @@
 """The search: parameters, what the ring tells, what lines tell, and what both come to."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from analysis.engine.all_samples import noise_of
 from analysis.engine.by_ring import Found, Led, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FAR_BEHIND
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
@@ -18,6 +19,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.settled import settled
+from analysis.engine.state import State
 from analysis.engine.system import Array, System
 
 FOLLOWED = 2
@@ -139,6 +141,8 @@ def _by_lines(
         led.search.follow(
             _to_follow(refiner, null, led.single, alone), [*alone, *led.single], seen=True
         )
+        if not led.search.arrived:
+            led.search.follow(_both(refiner, null, led.single, alone), [], seen=True)
     if led is None or not led.search.arrived:
         finder.sets(most_causes)
     ranked = finder.ranked()
@@ -186,6 +190,36 @@ def _to_follow(
     for one in known:
         tried.setdefault(one.hypothesis.names, one)
     return list(tried.values())
+
+
+def _both(
+    refiner: Refiner, null: Fitted, promises: Sequence[Fitted], alone: Sequence[Fitted]
+) -> list[Fitted]:
+    """What the ring promises beside what lines tell, where these are two kinds of thing.
+
+    Over a short stretch a ring tells nothing of a camera, and lines tell little of a ring: where
+    neither of two causes comes to the end alone, both may together.
+    """
+    kinds: dict[frozenset[str], Fitted] = {}
+    for one in promises:
+        kinds.setdefault(_kind(refiner, one), one)
+    rung = list(kinds.items())[:FOLLOWED]
+    seen: dict[frozenset[str], Fitted] = {}
+    for one in alone:
+        if one.log_score > null.log_score + SEEN:
+            seen.setdefault(_kind(refiner, one), one)
+    told = list(seen.items())[:FOLLOWED]
+    found = []
+    for kind, line in told:
+        for other, ring in rung:
+            if not kind & other and len(line.hypothesis.parts) == 1:
+                hypothesis = ring.hypothesis.plus(*next(iter(line.hypothesis.parts.items())))
+                values = ring.state.term_values() | line.state.term_values()
+                state = State.at(hypothesis, values, refiner.candidates)
+                there = refiner.at(state, refiner.directions_of(ring.point.nuisance))
+                start = Followed(ring.point.nuisance, state).point
+                found.append(replace(there, point=start))
+    return found
 
 
 def _kind(refiner: Refiner, fitted: Fitted) -> frozenset[str]:
