@@ -174,9 +174,9 @@ class FollowedSearch(RivalLeader):
     def _lead_beside(self) -> None:
         """From the best on: rivals, one cause more, one less."""
         for _ in range(self._most_causes):
-            self._lead_freed()
             self._one_less(self._best)
             waiting = not self._lead_rivals()
+            self._lead_freed()
             best = self._best
             more = self._one_more()
             if self._is_enough():

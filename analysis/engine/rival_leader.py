@@ -3,7 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from analysis.engine.all_samples import WORTH_IT, cost_of, farthest_first, forms_of, through
+from analysis.engine.all_samples import (
+    WORTH_IT,
+    cost_of,
+    farthest_first,
+    forms_of,
+    noise_of,
+    through,
+)
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint_search import most_promised, nuisances_of
 from analysis.engine.fitted import Fitted
@@ -22,8 +29,9 @@ EXCHANGES = 2
 PLACINGS = 2
 """From other places, places are asked once more: so often at a time."""
 
-BENT = 100.0
-"""Parameters of one kind whose squares come to more than this, in sigmas, stand for a cause."""
+BENT, FAR_BENT = 100.0, 1000.0
+"""Parameters of one kind whose squares come to more than this, in sigmas, stand for a cause: beside
+what explains to the noise, and beside what does not."""
 
 CLOSE = 60.0
 """What came as close as this, in squared misfit, may have been in places that are as wrong."""
@@ -121,7 +129,9 @@ class RivalLeader(Leader):
             if one.cause in candidates and one.term and one.cause not in best.names:
                 bent[one.cause] = bent.get(one.cause, 0.0) + float(sigmas) ** 2
         name = max(bent, key=lambda one: bent[one], default="")
-        if bent.get(name, 0.0) < BENT or candidates[name].family in families:
+        # A wrong law may be what they were bent for, but not so far.
+        least = BENT if best.left < noise_of(self._system) else FAR_BENT
+        if bent.get(name, 0.0) < least or candidates[name].family in families:
             return
         start = freed(self._system, candidates, best, name)
         assert start.state is not None
