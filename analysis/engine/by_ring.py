@@ -139,7 +139,9 @@ def by_ring(
     led.follow(first, single, guessed=about.followed.telling < 1.0)
     if led.ended:
         return Found(screened, (), faint=True)
-    if near or led.arrived:
+    # A pilot's poor law is told by the other recordings; that of a single one is asked of lines.
+    poor = led.is_poor and enough is None
+    if near or (led.arrived and not poor):
         rung = led.fitted()
         return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
     return Found((), (), faint=False, led=Led(led, single))

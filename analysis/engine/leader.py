@@ -8,6 +8,7 @@ from analysis.engine.all_samples import (
     farthest_first,
     led_through,
     misfit_at,
+    noise_of,
     nothing_again,
 )
 from analysis.engine.faint import Faint, faint
@@ -31,6 +32,9 @@ a way that nothing missed."""
 
 EFFORT, RECORDS = 3000.0, 4
 """Whole simulations, after which nothing new is tried; fewer, of more recordings than that."""
+
+POOR = 0.2
+"""What leaves so much more of a sample, squared, than noise may, is not what is there."""
 
 ARRIVED = 2.5
 """What was led to the end speaks for every sample, where no more than this is left of the squared
@@ -85,6 +89,11 @@ class Leader:
     def arrived(self) -> bool:
         """Whether something was led to the end, near the noise."""
         return bool(self._led) and self._best.misfit < ARRIVED * len(self._samples.shares)
+
+    @property
+    def is_poor(self) -> bool:
+        """Whether the best leaves far more than noise: something else may be there."""
+        return self._best.left > noise_of(self._system) + POOR
 
     def fitted(self) -> list[Fitted] | None:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""

@@ -141,7 +141,7 @@ def _by_lines(
         led.search.follow(
             _to_follow(refiner, null, led.single, alone), [*alone, *led.single], seen=True
         )
-        if not led.search.arrived:
+        if not led.search.arrived or led.search.is_poor:
             led.search.follow(_both(refiner, null, led.single, alone), [], seen=True)
     if led is None or not led.search.arrived:
         finder.sets(most_causes)
