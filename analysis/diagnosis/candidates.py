@@ -44,7 +44,7 @@ POLICIES: dict[str, Policy] = {
     "air_drag": Policy(shapes={"arm_m": (0.15,)}),
     "anchor_play": Policy(shapes={"hold_n": (0.25, 0.8), "slide_s": (1e-3,)}, form_share=0.3),
     "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
-    "cable_hysteresis": Policy(shapes={"yield_m": (1e-3,)}),
+    "cable_hysteresis": Policy(shapes={"yield_m": (5e-4, 2e-3)}),
     "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
     "cable_slack": Policy(form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),

@@ -277,7 +277,29 @@ class FollowedSearch(RivalLeader):
         for scored in promised[kind][1:]:
             if scored.hypothesis.names not in known and self._effort < self._most:
                 self._lead_like(tried[kind], scored, best.names)
+        self._lead_abreast(best, tried[kind])
         return True
+
+    def _lead_abreast(self, before: Followed, after: Followed) -> None:
+        """What had come as close as what one cause more was led beside is led with that as well."""
+        if after.state is None or not (before.to_end and after.to_end):
+            return
+        (new,) = set(after.names) - set(before.names)
+        candidates, close = self._refiner.candidates, cost_of(before) + CLOSE
+        known = {one.names for one in self._led if new in one.names}
+        part = after.state.hypothesis.parts[new]
+        values = {key: one for key, one in after.state.term_values().items() if key[0] == new}
+        for one in sorted((one for one in self._led if one.to_end), key=cost_of):
+            names = tuple(sorted({*one.names, new}))
+            if one.state is None or names in known or cost_of(one) > close:
+                continue
+            if len(names) != len(after.names) or self._kinds(one.names) & self._kinds([new]):
+                continue
+            known.add(names)
+            hypothesis = one.state.hypothesis.plus(new, part)
+            state = State.at(hypothesis, one.state.term_values() | values, candidates)
+            start = one.nuisance + after.nuisance - before.nuisance
+            self._keep(lead_from(self._system, after, state, start))
 
     def _would_tell(self, found: Faint, scored: Scored) -> bool:
         """Whether one cause more, as promised, would count beside the error of form that is left.
