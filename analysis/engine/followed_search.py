@@ -6,47 +6,25 @@ from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
     elsewhere_than,
-    farthest_first,
     noise_of,
-    rise_beside_form,
     tells_more,
 )
 from analysis.engine.cycles import valley
-from analysis.engine.faint import Faint
-from analysis.engine.faint_search import nuisances_of, one_more, promised_by
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import (
     kin_of,
-    lead_from,
-    lead_instead,
     part_of_the_way,
 )
+from analysis.engine.more_leader import FAR_BEHIND, MoreLeader
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.rival_leader import RivalLeader
-from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
-from analysis.engine.state import State
-
-MORE = 2
-"""Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
 
 EARLY = 0.03
 """Where none of the first that were tried can be led so much farther than parameters alone, as a
 share of the time, the ring tells nothing of what is left out."""
-
-EXPLAINS = 0.05
-"""Beside a law that was led to the end, one cause more is tried where it promises to explain this
-share of what that leaves beyond noise."""
-
-GENEROUS = 2.0
-"""And where so many times what it promises would count beside the error of form of what is on."""
-
-CLOSE = 60.0
-"""Without a cause that does nothing, the squared misfit rises by no more than this."""
 
 STRAINED = 500.0
 """What came to the end with parameters bent by more than this, in squared sigmas, has most likely
@@ -56,14 +34,11 @@ GUESSES = 2
 """So many of them, of other kinds, until one comes there with less; and until one comes farther,
 where the first came no farther than parameters alone."""
 
-FAR_BEHIND = 15.0
-"""What promises to stay this far behind is not led to the phase."""
 
-
-class FollowedSearch(RivalLeader):
+class FollowedSearch(MoreLeader):
     """Hypotheses led to the ring's phase, each for itself, and with one cause more where it asks.
 
-    Parameters are those of `RivalLeader`, and
+    Parameters are those of `MoreLeader`, and
 
     Parameters
     ----------
@@ -148,9 +123,6 @@ class FollowedSearch(RivalLeader):
                 kinds |= kind
                 self._lead(one.point.nuisance, one.state, near=False)
 
-    def _kinds(self, names: Sequence[str]) -> set[str]:
-        return {self._refiner.candidates[name].family or name for name in names}
-
     def _is_farther(self, led: Followed) -> bool:
         return led.to_end or led.share >= self._nothing.share + EARLY
 
@@ -198,10 +170,6 @@ class FollowedSearch(RivalLeader):
             self.ended = self._enough(best)
         return self.ended
 
-    def _explains(self, led: Followed) -> bool:
-        """Whether what is on explains to the noise."""
-        return led.state is not None and led.to_end and led.left < noise_of(self._system)
-
     def lead_first(self, hypotheses: Sequence[Fitted]) -> None:
         """Lead hypotheses, and look no farther.
 
@@ -239,105 +207,3 @@ class FollowedSearch(RivalLeader):
             start = elsewhere_than(best)
             self._keep(follow_ring(self._system, start, best.state, everything=True))
         return cost_of(self._best) < cost_of(best) - WORTH_IT
-
-    def _one_more(self) -> bool:
-        """Try one cause more beside the best; whether that leads farther."""
-        best, refiner = self._best, self._refiner
-        # However much was tried: beside what explains to the noise little is to be led.
-        spent = self._effort > self._most and not self._explains(best)
-        if len(best.names) >= self._most_causes or spent:
-            return False
-        found = self._faint(best)
-        family = {name: one.family or name for name, one in refiner.candidates.items()}
-        promised: dict[str, list[Scored]] = {}
-        for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
-            if best.to_end and not self._would_tell(found, scored):
-                continue
-            (added,) = set(scored.hypothesis.names) - set(best.names)
-            promised.setdefault(family[added], []).append(scored)
-
-        def lead(scored: Scored) -> Followed:
-            start = Followed(nuisances_of(found, scored), State.of(scored, refiner.candidates))
-            if best.to_end:
-                start = part_of_the_way(self._samples, best, start)
-            assert start.state is not None
-            self._lead(start.nuisance, start.state, near=best.to_end)
-            return self._led[-1]
-
-        known = {one.names for one in self._led}
-        tried: dict[str, Followed] = {}
-        for kind, laws in list(promised.items())[:MORE]:
-            promising = laws[0].log_score > next(iter(promised.values()))[0].log_score - FAR_BEHIND
-            if promising and laws[0].hypothesis.names not in known:
-                tried[kind] = lead(laws[0])
-        if self._best is best or (best.to_end and cost_of(self._best) > cost_of(best) - WORTH_IT):
-            return False
-        # One law was led that far; which of its kind it is, is another question.
-        kind = min(tried, key=lambda one: farthest_first(tried[one]))
-        for scored in promised[kind][1:]:
-            if scored.hypothesis.names not in known and self._effort < self._most:
-                self._lead_like(tried[kind], scored, best.names)
-        self._lead_abreast(best, tried[kind])
-        return True
-
-    def _lead_abreast(self, before: Followed, after: Followed) -> None:
-        """What had come as close as what one cause more was led beside is led with that as well."""
-        if after.state is None or not (before.to_end and after.to_end):
-            return
-        (new,) = set(after.names) - set(before.names)
-        candidates, close = self._refiner.candidates, cost_of(before) + CLOSE
-        known = {one.names for one in self._led if new in one.names}
-        part = after.state.hypothesis.parts[new]
-        values = {key: one for key, one in after.state.term_values().items() if key[0] == new}
-        for one in sorted((one for one in self._led if one.to_end), key=cost_of):
-            names = tuple(sorted({*one.names, new}))
-            if one.state is None or names in known or cost_of(one) > close:
-                continue
-            if len(names) != len(after.names) or self._kinds(one.names) & self._kinds([new]):
-                continue
-            known.add(names)
-            hypothesis = one.state.hypothesis.plus(new, part)
-            state = State.at(hypothesis, one.state.term_values() | values, candidates)
-            start = one.nuisance + after.nuisance - before.nuisance
-            self._keep(lead_from(self._system, after, state, start))
-
-    def _would_tell(self, found: Faint, scored: Scored) -> bool:
-        """Whether one cause more, as promised, would count beside the error of form that is left.
-
-        What explains little of what a law of friction leaves is lost in how wrong that law may be,
-        and to lead it is in vain; what explains all of it shows that the law was right.
-        """
-        best, known = self._best, self._refiner.candidates
-        explains = promised_by(found, self._refiner, scored)
-        count = len(self._samples.shares)
-        rise = rise_beside_form(self._refiner, best, self._nothing, count, explains)
-        on = Hypothesis() if best.state is None else best.state.hypothesis
-        costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
-        return GENEROUS * rise > costs
-
-    def _one_less(self, whole: Followed) -> None:
-        """Try without one cause, from where one more led to: each may only have shown the way."""
-        if whole.state is None or not whole.to_end or len(whole.names) < 2:
-            return
-        close = cost_of(whole) + CLOSE
-        known = {one.names for one in self._led if one.to_end and cost_of(one) < close}
-        for name in whole.names:
-            state = whole.state.without(name)
-            # However much was tried: a second cause may stand for what the first had not been.
-            if state.hypothesis.names in known:
-                continue
-            fewer = lead_from(self._system, whole, state)
-            self._keep(fewer)
-            if cost_of(fewer) < close:
-                self._lead_kin(fewer)
-                self._one_less(fewer)
-
-    def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
-        """Lead another law in the same places, from where one of its kind has come to."""
-        (name,) = set(scored.hypothesis.names) - set(known)
-        (like,) = set(law.names) - set(known)
-        found = lead_instead(self._samples, law, like, name) if law.to_end else None
-        if found is not None:
-            self._keep(found)
-        else:
-            self._lead(law.nuisance, State.of(scored, self._refiner.candidates), near=False)

@@ -9,9 +9,9 @@ from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
-from analysis.engine.followed_search import FAR_BEHIND
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
+from analysis.engine.more_leader import FAR_BEHIND
 from analysis.engine.moved import moved_far, released
 from analysis.engine.part import SEVERAL, records_of, rings
 from analysis.engine.pilot import by_pilot
