@@ -193,8 +193,7 @@ def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
     hypothesis = Hypothesis({name: Part(tuple(one.term or "" for one, _ in numbers))})
     state, start = State.at(hypothesis, values, refiner.candidates), at.copy()
     start[of[name]] = 0.0
-    fitted = refiner.at(state, refiner.directions_of(start))
-    return [replace(fitted, point=Followed(start, state).point)]
+    return [refiner.standing(state, start)]
 
 
 def _of_one_kind(single: Sequence[Fitted]) -> list[Fitted]:

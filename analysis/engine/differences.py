@@ -41,17 +41,15 @@ def differences(
     rows = np.stack(samples.residuals(points[known:], share))
     columns = np.asarray((here - rows) / steps[known:, None])
     far = np.linalg.norm(here - rows, axis=1)
+    coarse = np.flatnonzero(far > COARSE).tolist()
     ends: list[Followed] = []
-    redone: list[int] = []
-    for k in np.flatnonzero(far > COARSE).tolist():
+    for k in coarse:
         change = np.zeros(len(steps))
         change[known + k] = steps[known + k] * COARSE / far[k]
         ends += [at.moved(change, sign) for sign in (1.0, -1.0)]
-        redone.append(k)
-    if redone:
-        left = samples.residuals([one.point for one in ends], share)
-        for i, k in enumerate(redone):
-            (up, down), (above, below) = ends[2 * i : 2 * i + 2], left[2 * i : 2 * i + 2]
-            width = up.numbers[known + k] - down.numbers[known + k]
-            columns[k] = (below - above) / width
+    left = samples.residuals([one.point for one in ends], share)
+    for k, up, down, above, below in zip(
+        coarse, ends[::2], ends[1::2], left[::2], left[1::2], strict=True
+    ):
+        columns[k] = (below - above) / (up.numbers[known + k] - down.numbers[known + k])
     return columns, steps

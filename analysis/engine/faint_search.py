@@ -202,10 +202,5 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
 def fitted_there(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
     """A hypothesis as others are, with the score that the ring gives it."""
     nuisance, state = nuisances_of(found, scored), State.of(scored, refiner.candidates)
-    fitted = refiner.at(state, refiner.directions_of(nuisance))
-    return replace(
-        fitted,
-        log_score=scored.log_score,
-        point=Followed(nuisance, state).point,
-        left=found.followed.left,
-    )
+    fitted = refiner.standing(state, nuisance)
+    return replace(fitted, log_score=scored.log_score, left=found.followed.left)

@@ -118,6 +118,5 @@ def released(refiner: Refiner, null: Fitted, cause: str) -> Fitted:
     start = freed(system, refiner.candidates, Followed(null.point.nuisance, None), cause)
     led = follow_ring(system, start.nuisance, start.state, everything=True, near=True, most=EFFORT)
     assert led.state is not None
-    there = refiner.at(led.state, refiner.directions_of(led.nuisance))
-    point = Followed(led.nuisance, led.state).point
-    return replace(there, log_score=null.log_score, point=point, left=min(led.left, null.left))
+    there = refiner.standing(led.state, led.nuisance)
+    return replace(there, log_score=null.log_score, left=min(led.left, null.left))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.evidence import Frame, Problem, weigh
 from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import nuisance_columns, simulate_features, sound
@@ -143,6 +144,17 @@ class Refiner:
             Its free numbers and the directions of the nuisances.
         """
         return self._at(state, nuisance, self._problem.used)
+
+    def standing(self, state: State, nuisance: Array) -> Fitted:
+        """A hypothesis where it stands, from where it is to be led, ring and all.
+
+        Parameters
+        ----------
+        state, nuisance
+            Its free numbers and the nuisances, in sigmas.
+        """
+        fitted = self.at(state, self.directions_of(nuisance))
+        return replace(fitted, point=Followed(nuisance, state).point)
 
     def directions_of(self, nuisance: Array) -> Array:
         """Nuisances in the directions that can be seen, shape (p,)."""

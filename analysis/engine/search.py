@@ -1,14 +1,13 @@
 """The search: parameters, what the ring tells, what lines tell, and what both come to."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from analysis.engine.all_samples import noise_of
 from analysis.engine.by_ring import Found, Led, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
-from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.more_leader import FAR_BEHIND
@@ -216,9 +215,7 @@ def _both(
                 hypothesis = ring.hypothesis.plus(*next(iter(line.hypothesis.parts.items())))
                 values = ring.state.term_values() | line.state.term_values()
                 state = State.at(hypothesis, values, refiner.candidates)
-                there = refiner.at(state, refiner.directions_of(ring.point.nuisance))
-                start = Followed(ring.point.nuisance, state).point
-                found.append(replace(there, point=start))
+                found.append(refiner.standing(state, ring.point.nuisance))
     return found
 
 

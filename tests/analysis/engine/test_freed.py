@@ -9,19 +9,16 @@ from analysis.engine.look import look
 from analysis.engine.moved import freed
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.system import Array, Candidate, Nuisance, Point, Term
-from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, LetGo, ring, state_of
+from analysis.engine.system import Array, Point
+from tests.analysis.engine.test_by_ring import Tuned
+from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, ring, state_of
 
-TONE = Candidate("tone", "tone", "parameter", (Term("share", "share", "1", "", -1.0, 1.0, SIGMA),))
 OFF, RATE = 14.0, 0.3
 """By how many sigmas the tone is off, and the damping, 1/s."""
 
 
-class Detuned(LetGo):
-    """An oscillator of which the tone may be off by more than is known of it."""
-
-    nuisances = (Nuisance("tone", SIGMA, "1", cause="tone", term="share"),)
-    candidates = (DAMPING, TONE)
+class Detuned(Tuned):
+    """With the tone's own share simulated."""
 
     def _one(self, point: Point) -> Array:
         tone, damping = point.effects.get("tone"), point.effects.get("damping")
