@@ -79,7 +79,7 @@ def simulate(
         ),
     ] = True,
     method: Annotated[
-        Literal["dop853", "rk4"], typer.Option(help="Integration method.")
+        Literal["dop853", "dp5", "rk4"], typer.Option(help="Integration method.")
     ] = "dop853",
     step: Annotated[
         float | None, typer.Option(help="Longest step, s; default: what the machine needs.")

@@ -64,7 +64,7 @@ def simulate(
     drive
         "wrench" or "winch"; default: the excitation's.
     method
-        "dop853" or "rk4".
+        "dop853", "dp5" or "rk4".
     step_s
         Longest step; default: what the method needs for this machine and these effects.
     output_rate_hz

@@ -18,16 +18,16 @@ from model.kernel import PLATFORM_STATES, STATES, Extras
 from model.library.effect import Acts
 from model.library.selection import ActiveEffect, of_rig, those_that_act
 from model.machine import Machine
-from model.method import Method, find_method
+from model.method import METHODS, Method, find_method
 from model.motion import Motion, RampedSine
 from model.rest import rest_state
-from model.steps import Steps, divide
+from model.steps import Steps, divide, steps_a_row
 from model.tabulated import drive_at_stages
 
 Array = NDArray[np.float64]
 
 STABLE_STEP = 2.5
-"""Step times decay that an explicit method follows: rk4 2.8, dop853 about 6."""
+"""Step times decay that an explicit method follows: rk4 2.8, dp5 3.3, dop853 about 6."""
 
 SHORTEST_STEP_S = 2e-5
 """Steeper friction than this can follow trembles at rest, by less than its own switch."""
@@ -153,16 +153,28 @@ class Task:
         """Which cells sit behind their pulley, shape (8,)."""
         return np.array([cable.cell != "platform" for cable in self.rig.cable])
 
-    def step_s(self, method: Method) -> float:
-        """The longest step a method should take, by the highest tone and the sharpest switch."""
-        machine = self.machine
-        highest = max(machine.cable_tones_hz.max(), machine.platform_tones_hz.max())
-        switches = [
-            one.effect.longest_step_s
-            for one in self.acting
-            if one.effect.longest_step_s is not None
-        ]
-        return min([method.step_s(float(highest)), *switches, self._stable_step_s()])
+    def step_s(self, method: Method, *, thrifty: bool = False) -> float:
+        """The longest step a method should take, by the highest tone and the sharpest switch.
+
+        Parameters
+        ----------
+        method
+            Of which.
+        thrifty
+            For a fit; see `thrifty`.
+        """
+        of_tones_s = method.step_s(self._highest_tone_hz, thrifty=thrifty)
+        return min(of_tones_s, self._longest_step_s)
+
+    @cached_property
+    def _highest_tone_hz(self) -> float:
+        return float(max(self.machine.cable_tones_hz.max(), self.machine.platform_tones_hz.max()))
+
+    @cached_property
+    def _longest_step_s(self) -> float:
+        """The longest step that steps over no switch of an effect, and follows steep friction."""
+        switches = [one.effect.longest_step_s or np.inf for one in self.acting]
+        return float(min([*switches, self._stable_step_s()]))
 
     def _stable_step_s(self) -> float:
         """The longest step that follows the steepest friction down to rest."""
@@ -175,6 +187,30 @@ class Task:
                 steepest += one.effect.steepest(**{name: known[name] for name in wanted})
         decay = machine.fastest_decay_1_per_s(steepest)
         return max(STABLE_STEP / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
+
+    def thrifty(self, output_rate_hz: float) -> tuple[str, float]:
+        """The method and step that evaluate the right-hand side least often for a fit.
+
+        Parameters
+        ----------
+        output_rate_hz
+            Rows a second.
+
+        Returns
+        -------
+        str, float
+            Name of the method and step, s, of whole rows or a whole part of one: such as keep a
+            ring to about a thousandth of its amplitude over hundreds of periods.
+        """
+        found = []
+        for name in METHODS:
+            method = find_method(name)
+            step_s = self.step_s(method, thrifty=True)
+            divisions, joined = steps_a_row(output_rate_hz, step_s, join=method.inside)
+            stages = method.step_weights.size if joined == 1 else method.nodes.size
+            found.append((stages * divisions / joined, name, joined / divisions / output_rate_hz))
+        _, name, step_s = min(found)
+        return name, step_s
 
     def steps(self, method: Method, output_rate_hz: float, step_s: float | None) -> Steps:
         """The steps to take."""

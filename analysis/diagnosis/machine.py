@@ -15,13 +15,15 @@ from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
-from model import Task, simulate_many
+from model import Simulation, Task, simulate_many
 from model.library.discovery import library
 from model.motion import RampedSine
 from model.rest import tones_hz
 from model.simulator import run as simulate_task
 
 Array = NDArray[np.float64]
+Key = tuple[object, ...]
+"""Equal where the same is simulated."""
 
 LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
@@ -40,7 +42,7 @@ GROUP = 16
 class _Job:
     """One run of one point: what to simulate and how to look at it."""
 
-    key: tuple[object, ...]
+    key: Key
     task: Task
     sight: Sight
 
@@ -146,7 +148,7 @@ class RecordedMachine:
 
     def _shares(self, points: Sequence[Point], record: int) -> list[Share]:
         """One run of all points, in shares that are simulated side by side."""
-        together: dict[tuple[object, ...], dict[int, Point]] = {}
+        together: dict[Key, dict[int, Point]] = {}
         name = self.recordings[record].run.name
         for place, point in enumerate(points):
             if not point.records or name in point.records:
@@ -171,7 +173,7 @@ class RecordedMachine:
         """How many shares each process does of so many simulations."""
         return max(-(-count // (GROUP * self._workers)), 1)
 
-    def _key(self, point: Point, record: int) -> tuple[object, ...]:
+    def _key(self, point: Point, record: int) -> Key:
         """Equal where the same is simulated, however it is looked at."""
         inside = [
             (name, tuple(sorted(one.values.items())), tuple(sorted(one.shapes.items())))
@@ -190,8 +192,16 @@ class RecordedMachine:
         }
         tasks = {job.key: job.task for jobs in all_jobs.values() for job in jobs}
         rate_hz = self.recordings[work.record].output_hz
-        solved = simulate_many(list(tasks.values()), output_rate_hz=rate_hz, fewest=LANES_FROM)
-        done = dict(zip(tasks, solved, strict=True))
+        alike: dict[tuple[str, float], list[Key]] = {}
+        for key, task in tasks.items():
+            alike.setdefault(task.thrifty(rate_hz), []).append(key)
+        done: dict[Key, Simulation] = {}
+        for (method, step_s), keys in alike.items():
+            solved = simulate_many(
+                [tasks[key] for key in keys],
+                method=method, step_s=step_s, output_rate_hz=rate_hz, fewest=LANES_FROM,
+            )  # fmt: skip
+            done.update(zip(keys, solved, strict=True))
         seen: dict[tuple[object, ...], Prediction] = {}
         found: dict[int, Prediction] = {}
         for place, jobs in all_jobs.items():

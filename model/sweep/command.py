@@ -54,7 +54,7 @@ def sweep(
     ] = 0.1,
     seed: Annotated[int, typer.Option(help="Of the changed starts.")] = 0,
     method: Annotated[
-        Literal["dop853", "rk4"], typer.Option(help="Integration method.")
+        Literal["dop853", "dp5", "rk4"], typer.Option(help="Integration method.")
     ] = "dop853",
     step: Annotated[float | None, typer.Option(help="Longest step, s.")] = None,
     workers: Annotated[int, typer.Option(help="Processes; -1 takes one for each core.")] = 1,

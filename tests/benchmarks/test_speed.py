@@ -183,7 +183,7 @@ def test_growth(rig: Rig, paper: Excitation) -> None:
         "with batch size, a simulation: "
         + ", ".join(f"{size} {cost / size / batch[16] * 16:.2f}" for size, cost in batch.items())
     )
-    steps = {method: find_method(method) for method in ("dop853", "rk4")}
+    steps = {method: find_method(method) for method in ("dop853", "dp5", "rk4")}
     say(
         "by method: "
         + ", ".join(

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from scipy.integrate import DOP853
+from scipy.integrate import DOP853, RK45
 
 from cdpr8.rigfile import Excitation, Rig
 from model import compiled, dop853, kernel, simulate
@@ -70,6 +70,13 @@ def test_the_coefficients_of_dop853_are_scipys() -> None:
     assert np.array_equal(np.array(dop853.DENSE_WEIGHTS), DOP853.D)
 
 
+def test_the_coefficients_of_dp5_are_scipys() -> None:
+    method = find_method("dp5")
+    assert np.array_equal(method.nodes, RK45.C)
+    assert np.allclose(method.stage_weights[:, :5], RK45.A, rtol=1e-15)
+    assert np.allclose(method.step_weights, RK45.B, rtol=1e-15)
+
+
 def test_values_inside_a_step_meet_its_ends() -> None:
     method = find_method("dop853")
     start, end = method.weights_inside(np.array([0.0, 1.0]))
@@ -86,7 +93,10 @@ def test_a_tableau_is_consistent(name: str) -> None:
     assert not np.triu(method.stage_weights).any(), "explicit"
 
 
-@pytest.mark.parametrize(("name", "steps_s"), [("dop853", (0.02, 0.01)), ("rk4", (2e-3, 1e-3))])
+@pytest.mark.parametrize(
+    ("name", "steps_s"),
+    [("dop853", (0.02, 0.01)), ("dp5", (4e-3, 2e-3)), ("rk4", (2e-3, 1e-3))],
+)
 def test_a_method_has_its_order_on_this_machine(
     rig: Rig, name: str, steps_s: tuple[float, float]
 ) -> None:

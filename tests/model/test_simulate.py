@@ -185,7 +185,7 @@ def test_the_same_question_gets_the_same_answer_to_the_bit(rig: Rig) -> None:
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
-        ({"method": "euler"}, "dop853, rk4"),
+        ({"method": "euler"}, "dop853, dp5, rk4"),
         ({"output_rate_hz": 0.0}, "above 0"),
         ({"step_s": -1.0}, "above 0"),
         ({"step_s": 1e-9}, "steps"),
