@@ -6,15 +6,14 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from model.compiled import compiled
+from model.loops import STEEPNESS
 from model.motion import Command, Motion, RampedSine
 
 Array = NDArray[np.float64]
 
 GRID_HZ = 4000.0
 """Play depends on what went before: it is followed on this grid, and interpolated."""
-
-STEEPNESS = 4
-"""How sharply a stop is met."""
 
 
 @dataclass(frozen=True)
@@ -193,11 +192,5 @@ def _play(values: Array, play: float) -> Array:
     lag = np.zeros_like(values)
     if not np.any(values):
         return lag
-    z = 0.0
-    for row, change in enumerate(np.diff(values), start=1):
-        near = max(0.0, np.sign(change) * z / play)
-        half = z + 0.5 * change * (1.0 - near**STEEPNESS)
-        near = max(0.0, np.sign(change) * half / play)
-        z += change * (1.0 - min(near, 1.0) ** STEEPNESS)
-        lag[row] = z
+    compiled("follow_play")(np.diff(values), play, lag)
     return lag

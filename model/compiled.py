@@ -30,6 +30,9 @@ INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
 SCALAR = ("integrate", "observe", "derivatives", "drive_wrench")
 """Functions of `model.kernel` that Python calls; all others are compiled into them."""
 
+LOOPS = ("read_rows", "follow_play")
+"""Functions of `model.loops` that Python calls."""
+
 LANE = ("integrate_lanes", "observe_lanes")
 """Functions of `model.lanes` that Python calls."""
 
@@ -73,7 +76,7 @@ def lane_integrator(announce: Announce | None = None) -> Any:
 
 def _kernel_modules() -> tuple[ModuleType, ...]:
     """Modules whose functions are compiled; any of their functions may be called in the kernel."""
-    from model import cable, kernel, kinematics, lanes, platform
+    from model import cable, kernel, kinematics, lanes, loops, platform
     from model.library import assembled, bristle, context, smooth
     from model.library import lanes as layout
     from model.library.discovery import effect_modules
@@ -90,6 +93,7 @@ def _kernel_modules() -> tuple[ModuleType, ...]:
         assembled,
         kernel,
         lanes,
+        loops,
     )
 
 
@@ -114,12 +118,12 @@ def _is_cached(name: str) -> bool:
 
 @cache
 def compiled(name: str) -> Any:
-    """A function of `SCALAR` or `LANE`, compiled, or loaded from the cache, at its first call."""
+    """A function of `SCALAR`, `LANE` or `LOOPS`, compiled or from the cache, at its first call."""
     import numba
 
-    from model import kernel, lanes
+    from model import kernel, lanes, loops
 
-    module: ModuleType = kernel if name in SCALAR else lanes
+    module: ModuleType = kernel if name in SCALAR else lanes if name in LANE else loops
     options: dict[str, Any] = {"error_model": "numpy", **UNCOUNTED}
     if name in LANE:
         options["fastmath"] = FAST
@@ -142,7 +146,7 @@ def _compile_laws() -> None:
             if (
                 isfunction(law)
                 and law.__module__ == module.__name__
-                and law.__name__ not in SCALAR + LANE
+                and law.__name__ not in SCALAR + LANE + LOOPS
             ):
                 inline = {"forceinline": True} if law.__name__ in INLINE else {}
                 register_jitable(error_model="numpy", **UNCOUNTED, **fast, **inline)(law)

@@ -16,7 +16,11 @@ AXES = ("roll", "pitch", "yaw")
 
 
 class Motion(Protocol):
-    """Any motion the platform can be commanded to follow."""
+    """Any motion the platform can be commanded to follow, told from others by its numbers."""
+
+    def __hash__(self) -> int:
+        """Equal where motions are."""
+        ...
 
     @property
     def start_s(self) -> float:

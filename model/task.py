@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cached_property
 from inspect import signature
 from typing import Self
 
@@ -14,6 +14,7 @@ from cdpr8.rigfile.excitation import Excitation
 from cdpr8.rigfile.schema import Rig
 from model.drive import drive_table
 from model.extras import pack, state_count
+from model.kept_drive import DriveKey, Resting, followed, resting_wrench, table_at_stages
 from model.kernel import PLATFORM_STATES, STATES, Extras
 from model.library.effect import Acts
 from model.library.selection import ActiveEffect, of_rig, those_that_act
@@ -219,9 +220,9 @@ class Task:
 
     def drive_at_stages(self, method: Method, steps: Steps) -> Array:
         """The drive's table; kept for the next task with the same drive."""
-        return _cached_table(self.drive_key(method, steps))
+        return table_at_stages(self.drive_key(method, steps))
 
-    def drive_key(self, method: Method, steps: Steps) -> "DriveKey":
+    def drive_key(self, method: Method, steps: Steps) -> DriveKey:
         """Equal for tasks that share their drive's table."""
         return DriveKey(self.nominal_machine, self.driven, steps, method.name, self.drive_kind)
 
@@ -257,8 +258,7 @@ class Task:
         """How the plant hangs, with the drive as it is at rest."""
         if self.machine is self.nominal_machine or not self._differs:
             return np.zeros(self.states)
-        at_s, before = np.zeros((1, 1)), np.full((1, 1), -1.0)
-        wrench = drive_table(self.nominal_machine, self.driven, at_s, before, "wrench")[0, 0, :6]
+        wrench = resting_wrench(Resting(self.nominal_machine, self.driven))
         return rest_state(self.machine, self.extras, wrench, self.states)
 
     @property
@@ -293,41 +293,11 @@ class Task:
 
     def _state_at(self, time_s: float, within_s: float) -> Array:
         """The state of a platform that follows X*, cables at rest."""
-        pose, rate, _ = self.driven.at(np.array(time_s), np.array(within_s))
         state = np.zeros(self.states)
-        state[0:6], state[6:12] = pose, rate
+        state[0:6], state[6:12] = followed(self.driven, time_s, within_s)
         return state
 
 
 def is_measurement(effect: ActiveEffect) -> bool:
     """Whether an effect changes what is recorded, not what happens."""
     return effect.effect.acts in (Acts.CELL, Acts.CAMERA, Acts.CLOCK)
-
-
-@dataclass(frozen=True)
-class DriveKey:
-    """All that a drive's table depends on, told apart by value."""
-
-    machine: Machine
-    motion: Motion
-    steps: Steps
-    method: str
-    kind: str
-
-    @cached_property
-    def _value(self) -> tuple[object, ...]:
-        numbers = b"".join(np.ascontiguousarray(one).tobytes() for one in self.machine.plant())
-        return numbers, self.motion, self.steps.point_s.tobytes(), self.method, self.kind
-
-    def __hash__(self) -> int:
-        return hash(self._value)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, DriveKey) and self._value == other._value
-
-
-@lru_cache(maxsize=16)
-def _cached_table(key: DriveKey) -> Array:
-    """Tables of some megabytes: a fit to several runs asks thousands of times for a few of them."""
-    nodes = find_method(key.method).nodes
-    return drive_at_stages(key.machine, key.motion, key.steps.point_s, nodes, key.kind)

@@ -45,8 +45,8 @@ class Samples:
         self._mask = [
             seen(one, held=held, everything=everything, share=share) for one in system.bundles
         ]
-        self._whiten = [
-            Whiten(one, chosen) for one, chosen in zip(system.bundles, self._mask, strict=True)
+        self._parts = [
+            _Part(one, chosen) for one, chosen in zip(system.bundles, self._mask, strict=True)
         ]
 
     def residuals(self, points: Sequence[Point], share: float = 1.0) -> list[Array]:
@@ -82,16 +82,8 @@ class Samples:
 
     def _residual(self, prediction: Prediction) -> Array:
         """Residuals of the samples that count, in blocks, one bundle after the other."""
-        parts = []
-        for bundle, chosen, whiten, found in zip(
-            self.system.bundles, self._mask, self._whiten, prediction, strict=True
-        ):
-            rest = whiten(bundle.value[chosen] - found[chosen])
-            block = _block(bundle)
-            whole = len(rest) // block * block
-            rest = rest[:whole].reshape(-1, block, rest.shape[1]).sum(axis=1) / np.sqrt(block)
-            parts.append(rest.reshape(-1))
-        return np.concatenate(parts)
+        pairs = zip(self._parts, prediction, strict=True)
+        return np.concatenate([part.residual(found).reshape(-1) for part, found in pairs])
 
     def parts(self, residual: Array) -> Iterator[tuple[Array, Array]]:
         """Times, shape (k,), and residuals, shape (k, m), of one bundle after the other.
@@ -139,6 +131,35 @@ class Samples:
             ends = np.arange(1, count // block + 1) * block / max(count, 1)
             parts.append(np.repeat(ends, len(bundle.names)))
         return np.concatenate(parts)
+
+
+class _Part:
+    """The samples of a bundle that count, in blocks.
+
+    Parameters
+    ----------
+    bundle
+        The samples.
+    chosen
+        Which of them, shape (n,).
+    """
+
+    def __init__(self, bundle: Bundle, chosen: NDArray[np.bool_]) -> None:
+        places = np.flatnonzero(chosen)
+        self._block = _block(bundle)
+        places = places[: len(places) // self._block * self._block]
+        whole = len(places) and places[-1] - places[0] + 1 == len(places)
+        self._places = slice(places[0], places[-1] + 1) if whole else places
+        self._value = bundle.value[self._places]
+        self._whiten = Whiten(bundle, self._places)
+
+    def residual(self, found: Array) -> Array:
+        """In units of noise, shape (blocks, m)."""
+        rest = self._whiten(self._value - found[self._places])
+        if self._block == 1:
+            return rest
+        rest = rest.reshape(-1, self._block, rest.shape[1])
+        return np.asarray(np.einsum("ijk->ik", rest) / np.sqrt(self._block))
 
 
 def seen(
