@@ -22,6 +22,7 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
+from analysis.engine.way import STRAIN
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
@@ -34,6 +35,9 @@ MOST_OF_IT, BENT = 0.5, 25.0
 squares come to more than this, in sigmas, are led free of what is known of them."""
 
 
+LONG = 0.4
+"""Where parameters alone have foretold this share of the time, nothing was left out of that."""
+
 MUCH = 0.5
 """Where no cause promises to explain this share of what parameters leave beyond noise, those may
 have come to a hollow beside their valley: they are led once more from elsewhere."""
@@ -42,7 +46,8 @@ have come to a hollow beside their valley: they are led once more from elsewhere
 class Found(NamedTuple):
     """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
 
-    Of several recordings, those that stand aside: hypotheses do not count what is there.
+    Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
+    which share of the time anything can be foretold.
     """
 
     screened: Sequence[Scored]
@@ -50,6 +55,7 @@ class Found(NamedTuple):
     faint: bool
     led: "Led | None" = None
     aside: tuple[str, ...] = ()
+    foretold: float = 1.0
 
 
 class Led(NamedTuple):
@@ -144,7 +150,21 @@ def by_ring(
     if near or (led.arrived and not poor):
         rung = led.fitted()
         return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
-    return Found((), (), faint=False, led=Led(led, single))
+    foretold = 1.0 if led.arrived else _foretold(nothing)
+    return Found((), (), faint=False, led=Led(led, single), foretold=foretold)
+
+
+def _foretold(nothing: Followed) -> float:
+    """Up to which share of the time parameters alone foretell all, before nothing does.
+
+    What was left out acts from the beginning: parameters make up for it, or lose the ring at once.
+    Where they have foretold half of the motion, and nothing foretells the rest, the motion may have
+    grown of itself, out of what is too small to be seen.
+    """
+    share, _ = nothing.reached
+    about = nothing.about
+    bent = nothing.strain > STRAIN or (about is not None and about.telling <= share)
+    return share if LONG <= share < 1.0 and not bent else 1.0
 
 
 def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:

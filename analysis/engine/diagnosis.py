@@ -18,6 +18,7 @@ from analysis.engine.look import look
 from analysis.engine.part import records_of, rings
 from analysis.engine.search import REMAINS_ALONE, Search, search
 from analysis.engine.system import Array, System
+from analysis.engine.until import Until
 
 Stage = Literal["align", "locate", "name", "confirm"]
 
@@ -28,6 +29,13 @@ POORLY = 2.0
 REMAINS = 0.2
 """Where it was led to the ring's phase: what is so much more than noise for each sample. Laws are
 never quite exact."""
+
+FORETOLD = (
+    "what was recorded after {until_s:.1f} s does not count: up to there parameters alone foretell "
+    "it to the noise, and after that nothing that was tried does. A motion that grows of itself, "
+    "as in a parametric resonance, does that, and so does something that only begins then; "
+    "another frequency of the drive tells which"
+)
 
 
 @dataclass(frozen=True)
@@ -56,7 +64,7 @@ class Diagnosis:
     Attributes
     ----------
     system
-        What was diagnosed.
+        What was diagnosed; an `Until`, where nothing foretells what came after some time.
     calibrated
         The system at its likeliest parameters, nothing left out.
     findings
@@ -128,7 +136,9 @@ def diagnose(
         found = locate(system.bundles, seen.calibrated.problem, seen.calibrated.problem.residual)
         return Diagnosis(system, seen.calibrated, found, None, None, None, None, notes=notes)
     searched = search(system, tell, anew=anew, most_causes=most_causes)
-    problem = searched.calibrated.problem
+    system, problem = searched.system, searched.calibrated.problem
+    if isinstance(system, Until):
+        notes = (*notes, FORETOLD.format(until_s=system.end_s))
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)

@@ -20,6 +20,7 @@ from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.settled import settled
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
+from analysis.engine.until import Until
 
 FOLLOWED = 2
 """Of what the ring promises, and of what is likely without it, so many are led to its phase."""
@@ -41,7 +42,8 @@ class Search:
     Attributes
     ----------
     system, lens, data
-        What was looked at; data are its features, shape (f,).
+        What was looked at, the recording up to some time where nothing foretells the rest; data are
+        its features, shape (f,).
     calibrated
         The system at its likeliest parameters.
     screened
@@ -103,6 +105,8 @@ def search(
     if rings(system):
         several = len(records_of(system)) >= SEVERAL
         found = (by_pilot if several else by_ring)(refiner, most_causes, tell)
+    if not found.fitted and found.foretold < 1.0 and not isinstance(system, Until):
+        return search(Until(system, found.foretold), tell, anew=anew, most_causes=most_causes)
     if not found.fitted:
         found = _by_lines(refiner, null, most_causes, tell, found.led)
     if not rings(system):
