@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than, noise_of
+from analysis.engine.beginnings import begun_otherwise
 from analysis.engine.cycles import valley
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search, fitted_there, one_more
@@ -116,7 +117,7 @@ def by_ring(
         rung = led.fitted() if led.arrived else None
         return Found((), rung or (), faint=rung is not None)
     at = refiner.calibrated.at if start is None else start.nuisance
-    nothing = valley(system, follow_ring(system, at, everything=True)).led
+    nothing = _nothing(system, at)
     near = nothing.left < FAINT and nothing.about is None
     chosen = [one for one in system.candidates if not one.fixed]
     about = faint(system, nothing, chosen, following)
@@ -165,6 +166,25 @@ def _foretold(nothing: Followed) -> float:
     about = nothing.about
     bent = nothing.strain > STRAIN or (about is not None and about.telling <= share)
     return share if LONG <= share < 1.0 and not bent else 1.0
+
+
+def _nothing(system: System, at: Array) -> Followed:
+    """Parameters alone, led as far as they lead, begun otherwise where that is not to the end.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    at
+        The likeliest parameters, in sigmas, shape (p,).
+    """
+    nothing = follow_ring(system, at, everything=True)
+    if nothing.left > FAINT or nothing.about is not None:
+        begun = begun_otherwise(system, at)
+        if begun is not None:
+            other = follow_ring(system, begun.nuisance, everything=True)
+            nothing = min(nothing, other, key=lambda one: (-one.reached[0], cost_of(one)))
+    return valley(system, nothing).led
 
 
 def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:
