@@ -157,11 +157,9 @@ def diagnose(
 
 def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
     chosen = judgement.chosen
-    problem, weighed = chosen.problem, chosen.weighed
-    residual = problem.residual + problem.nuisance @ (problem.at - weighed.nuisance)
-    used = problem.used
-    scaled = _allowed(residual, weighed.variance, problem.base)
-    found = locate(searched.system.bundles, problem, np.where(used, scaled, 0.0))
+    problem = chosen.problem
+    scaled = _allowed(chosen.remaining, chosen.weighed.variance, problem.base)
+    found = locate(searched.system.bundles, problem, np.where(problem.used, scaled, 0.0))
     if searched.faint and not np.isnan(chosen.left):
         most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)
         return Remains(chosen.left, chosen.left > most, found)
@@ -171,7 +169,7 @@ def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
         poor = missed(chosen, searched.null, known, noise) > 1.0 / FORMS_OFF
         poor = poor or not chosen.hypothesis.parts
         return Remains(chosen.left, chosen.left > most and poor, found)
-    misfit = float(np.mean(residual[used] ** 2 / weighed.variance[used]))
+    misfit = chosen.lines_left
     return Remains(misfit, misfit > POORLY, found)
 
 

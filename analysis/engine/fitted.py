@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import nan
 
+import numpy as np
+
 from analysis.engine.evidence import Problem, Weighed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.state import State
@@ -57,3 +59,16 @@ class Fitted:
     at_limit: tuple[tuple[str, str], ...]
     state: State
     left: float = nan
+
+    @property
+    def remaining(self) -> Array:
+        """What is left of features where nuisances are likeliest, shape (f,)."""
+        return self.problem.residual + self.problem.nuisance @ (
+            self.problem.at - self.weighed.nuisance
+        )
+
+    @property
+    def lines_left(self) -> float:
+        """The square of that over its variance, error of form and all, on average."""
+        used = self.problem.used
+        return float(np.mean(self.remaining[used] ** 2 / self.weighed.variance[used]))

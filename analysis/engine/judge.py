@@ -67,6 +67,11 @@ need, this is the doubt. One cause that explains all lines is mostly the right o
 missing law is made up of."""
 
 
+EVEN_OF_LINES = 15.0
+"""There, what leaves so many times more of lines than noise and the error of form is as likely
+something else."""
+
+
 @dataclass(frozen=True)
 class Judgement:
     """What the search comes to.
@@ -190,7 +195,8 @@ def doubt_of(
 ) -> float:
     """The probability that what explains best is not what is there, by what it leaves."""
     if lost:
-        return min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
+        doubt = min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
+        return 1.0 - (1.0 - doubt) / (1.0 + max(fitted.lines_left - 1.0, 0.0) / EVEN_OF_LINES)
     if np.isnan(fitted.left):
         return 0.0
     form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)

@@ -76,6 +76,18 @@ def test_where_no_ring_can_be_followed_each_cause_that_is_needed_is_a_doubt(
     assert said.causes[0].probability == pytest.approx(1.0 - DOUBT_A_CAUSE, abs=0.01)
 
 
+def test_where_no_ring_can_be_followed_what_leaves_much_of_the_lines_is_not_believed(
+    refiner: Refiner,
+) -> None:
+    fitted = of(refiner, np.nan)
+    best = max(fitted, key=lambda one: one.log_score)
+    poor = replace(best.problem, residual=best.problem.residual + 30.0)
+    others = [one for one in fitted if one is not best]
+    said = judge([replace(best, problem=poor), *others], CANDIDATES, lost=True)
+    assert said.verdict == "unexplained"
+    assert said.causes[0].probability < 0.3
+
+
 def test_nothing_is_said_to_be_left_out_only_where_parameters_follow_the_ring(
     refiner: Refiner,
 ) -> None:
