@@ -18,6 +18,7 @@ from model.library.selection import ActiveEffect
 from model.method import Method, find_method
 from model.simulation import Simulation
 from model.simulator import as_simulation, run
+from model.status import Status
 from model.steps import Steps, steps_a_row
 from model.task import Task
 from model.trajectory import Trajectory, blow_up_limits, rows_inside
@@ -73,8 +74,18 @@ def simulate_many(
         for place, simulation in _run(
             [tasks[place] for place in places], places, scheme, output_rate_hz, step_s, announce
         ):
-            results[place] = simulation if reduce is None else reduce(simulation)
+            kept = simulation
+            if simulation.outcome.status is Status.BLOW_UP and _has_others(tasks, places, place):
+                # A lane has the states of all that is on in any, and one of those may be to blame.
+                kept = run(tasks[place], method, step_s, output_rate_hz, announce)
+            results[place] = kept if reduce is None else reduce(kept)
     return results
+
+
+def _has_others(tasks: Sequence[Task], places: Sequence[int], place: int) -> bool:
+    """Whether a task ran beside others with effects that it has not."""
+    own = {one.name for one in tasks[place].acting}
+    return any(one.name not in own for other in places for one in tasks[other].acting)
 
 
 def _groups(

@@ -19,16 +19,13 @@ from model.kernel import PLATFORM_STATES, STATES, Extras
 from model.library.effect import Acts
 from model.library.selection import ActiveEffect, of_rig, those_that_act
 from model.machine import Machine
-from model.method import METHODS, Method, find_method
+from model.method import Method, find_method
 from model.motion import Motion, RampedSine
 from model.rest import rest_state
 from model.steps import Steps, divide, steps_a_row
 from model.tabulated import drive_at_stages
 
 Array = NDArray[np.float64]
-
-STABLE_STEP = 2.5
-"""Step times decay that an explicit method follows: rk4 2.8, dp5 3.3, dop853 about 6."""
 
 SHORTEST_STEP_S = 2e-5
 """Steeper friction than this can follow trembles at rest, by less than its own switch."""
@@ -165,20 +162,18 @@ class Task:
             For a fit; see `thrifty`.
         """
         of_tones_s = method.step_s(self._highest_tone_hz, thrifty=thrifty)
-        return min(of_tones_s, self._longest_step_s)
+        decay = self._fastest_decay_1_per_s
+        of_decay_s = max(method.stable / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
+        switches = [one.effect.longest_step_s or np.inf for one in self.acting]
+        return float(min([of_tones_s, of_decay_s, *switches]))
 
     @cached_property
     def _highest_tone_hz(self) -> float:
         return float(max(self.machine.cable_tones_hz.max(), self.machine.platform_tones_hz.max()))
 
     @cached_property
-    def _longest_step_s(self) -> float:
-        """The longest step that steps over no switch of an effect, and follows steep friction."""
-        switches = [one.effect.longest_step_s or np.inf for one in self.acting]
-        return float(min([*switches, self._stable_step_s()]))
-
-    def _stable_step_s(self) -> float:
-        """The longest step that follows the steepest friction down to rest."""
+    def _fastest_decay_1_per_s(self) -> float:
+        """How fast the steepest friction brings the platform to rest."""
         machine = self.machine
         steepest = np.zeros(machine.cables)
         for one in self.acting:
@@ -186,8 +181,7 @@ class Task:
                 known = dict(one.columns()) | {"pretension": machine.pretension}
                 wanted = signature(one.effect.steepest).parameters
                 steepest += one.effect.steepest(**{name: known[name] for name in wanted})
-        decay = machine.fastest_decay_1_per_s(steepest)
-        return max(STABLE_STEP / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
+        return machine.fastest_decay_1_per_s(steepest)
 
     def thrifty(self, output_rate_hz: float) -> tuple[str, float]:
         """The method and step that evaluate the right-hand side least often for a fit.
@@ -204,7 +198,7 @@ class Task:
             ring to about a thousandth of its amplitude over hundreds of periods.
         """
         found = []
-        for name in METHODS:
+        for name in ("dop853", "dp5"):
             method = find_method(name)
             step_s = self.step_s(method, thrifty=True)
             divisions, joined = steps_a_row(output_rate_hz, step_s, join=method.inside)

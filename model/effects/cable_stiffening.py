@@ -25,4 +25,6 @@ EFFECT = Effect(
         Parameter("asymmetry_m", "m", 0.0, 0.0, 0.1, "a; 0: alike both ways"),
     ),
     pull=pull,
+    longest_step_s=3.1e-3,
+    cost="stretched, it rings faster than at rest",
 )

@@ -70,4 +70,6 @@ EFFECT = Effect(
     ),
     pull=pull,
     rates=rates,
+    longest_step_s=3.1e-3,
+    cost="a branch at 125 Hz; five states a cable",
 )

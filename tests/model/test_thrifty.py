@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from cdpr8.rigfile import Excitation, Rig
-from model import ActiveEffect, Task
+from model import ActiveEffect, Task, simulate_many
+from model.library.discovery import library
+from model.library.effect import Effect
 from model.method import find_method
 from model.simulator import run
 
@@ -40,6 +42,44 @@ def test_it_evaluates_less_and_errs_by_less_than_a_tenth_of_noise(
     assert thrifty.stats.derivatives < 0.7 * usual.stats.derivatives
     missed = thrifty.tension_n - exact.tension_n
     assert np.sqrt(np.mean(missed**2)) < 0.1 * NOISE_N
+
+
+def largest(effect: Effect) -> ActiveEffect:
+    """With every magnitude at a quarter of what is plausible, or its default, if that is more."""
+    values = {
+        one.name: max(0.25 * one.high, one.default) for one in effect.parameters if one.magnitude
+    }
+    return ActiveEffect(effect.name, values)
+
+
+IN_KERNEL = [one for one in library().values() if one.acts.in_kernel]
+
+
+@pytest.mark.parametrize("effect", IN_KERNEL, ids=lambda one: one.name)
+def test_no_effect_errs_by_more_than_its_usual_step_makes_it(rig: Rig, effect: Effect) -> None:
+    short = Excitation(rest_s=0.3, motion_s=1.5, ramp_s=0.3)
+    for one in (ActiveEffect(effect.name), largest(effect)):
+        task = Task(rig, short, effects=[one])
+        exact = run(task, step_s=2.5e-4, output_rate_hz=RATE_HZ).tension_n
+        usual = run(task, output_rate_hz=RATE_HZ).tension_n
+        thrifty = run(task, *task.thrifty(RATE_HZ), RATE_HZ).tension_n
+        if len(usual) < len(exact) or len(exact) < len(thrifty):
+            continue  # such a machine flies apart
+        missed = [float(np.sqrt(np.mean((one - exact) ** 2))) for one in (thrifty, usual)]
+        assert missed[0] < max(0.1 * NOISE_N, 3.0 * missed[1])
+
+
+def test_lanes_of_a_fit_do_not_depend_on_what_stands_beside_them(rig: Rig) -> None:
+    """What is off in a lane has its states there all the same, which must stay at rest."""
+    tasks = [task_with(rig, effect.name) for effect in IN_KERNEL]
+    alike: dict[tuple[str, float], list[Task]] = {}
+    for task in tasks:
+        alike.setdefault(task.thrifty(RATE_HZ), []).append(task)
+    for (method, step_s), group in alike.items():
+        lanes = simulate_many(group, method=method, step_s=step_s, output_rate_hz=RATE_HZ)
+        for task, lane in zip(group, lanes, strict=True):
+            alone = run(task, method, step_s, RATE_HZ)
+            assert lane.tension_n == pytest.approx(alone.tension_n, abs=1e-4)
 
 
 def test_steps_divide_rows_or_join_them(rig: Rig) -> None:
