@@ -19,6 +19,9 @@ BEGINNING, TOLD = WINDOWS[0], 0.27
 """Shares of the time: what is drawn fits as well up to the first, and is held to be right where it
 leaves nothing but noise up to the second."""
 
+FAR = 30.0
+"""What leaves so much of a squared sample is in no valley near by."""
+
 TRIES = 6
 """So many are drawn. Where it was measured, four of ten found the right valley."""
 
@@ -56,12 +59,14 @@ def begun_otherwise(system: System, at: Array) -> Followed | None:
 
 
 def _led(system: System, at: Array, upto: float) -> Way:
-    """Parameters alone, led over windows up to a share of the time."""
+    """Parameters alone, led over windows up to a share of the time, as long as they foretell it."""
     way = Way(Samples(system, everything=True), Followed(at, None))
     for share in WINDOWS:
         if share > upto:
             break
         for _ in range(STEPS):
-            if not way.step(share, lost=np.inf):
+            if not way.step(share, lost=FAR):
                 break
+        if way.left(share) > way.allowed(share):
+            break
     return way
