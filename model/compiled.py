@@ -30,7 +30,7 @@ INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
 SCALAR = ("integrate", "observe", "derivatives", "drive_wrench")
 """Functions of `model.kernel` that Python calls; all others are compiled into them."""
 
-LOOPS = ("read_rows", "follow_play")
+LOOPS = ("between_rows", "follow_play")
 """Functions of `model.loops` that Python calls."""
 
 LANE = ("integrate_lanes", "observe_lanes")

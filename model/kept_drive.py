@@ -23,22 +23,32 @@ def followed(motion: Motion, time_s: float, within_s: float) -> tuple[Array, Arr
     return pose, rate
 
 
-@dataclass(frozen=True)
-class Resting:
-    """Whose drive at rest, told apart by value."""
+class _ByValue:
+    """A key whose machine and arrays are told apart by value, as a cache asks."""
+
+    def _value(self) -> tuple[object, ...]:
+        raise NotImplementedError
+
+    @cached_property
+    def _told(self) -> tuple[object, ...]:
+        return self._value()
+
+    def __hash__(self) -> int:
+        return hash(self._told)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and self._told == other._told
+
+
+@dataclass(frozen=True, eq=False)
+class Resting(_ByValue):
+    """Whose drive at rest."""
 
     machine: Machine
     motion: Motion
 
-    @cached_property
     def _value(self) -> tuple[object, ...]:
         return _bytes_of(self.machine), self.motion
-
-    def __hash__(self) -> int:
-        return hash(self._value)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Resting) and self._value == other._value
 
 
 @lru_cache(maxsize=64)
@@ -52,9 +62,9 @@ def _bytes_of(machine: Machine) -> bytes:
     return b"".join(np.ascontiguousarray(one).tobytes() for one in machine.plant())
 
 
-@dataclass(frozen=True)
-class DriveKey:
-    """All that a drive's table depends on, told apart by value."""
+@dataclass(frozen=True, eq=False)
+class DriveKey(_ByValue):
+    """All that a drive's table depends on."""
 
     machine: Machine
     motion: Motion
@@ -62,7 +72,6 @@ class DriveKey:
     method: str
     kind: str
 
-    @cached_property
     def _value(self) -> tuple[object, ...]:
         return (
             _bytes_of(self.machine),
@@ -71,12 +80,6 @@ class DriveKey:
             self.method,
             self.kind,
         )
-
-    def __hash__(self) -> int:
-        return hash(self._value)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, DriveKey) and self._value == other._value
 
 
 @lru_cache(maxsize=16)

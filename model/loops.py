@@ -9,7 +9,7 @@ STEEPNESS = 4
 """How sharply the stop of a play is met."""
 
 
-def read_rows(time_s: Array, values: Array, read_s: Array, seen: Array) -> None:
+def between_rows(time_s: Array, values: Array, read_s: Array, seen: Array) -> None:
     """Cubics through the four rows about each time; before and after the rows, their ends.
 
     Parameters

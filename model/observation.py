@@ -117,5 +117,5 @@ def _read(time_s: Array, tension: Array, read_s: Array) -> Array:
     if len(time_s) < LEAST_ROWS:
         return np.repeat(tension[:1], len(at_s), axis=0)
     seen = np.empty((len(at_s), tension.shape[1]))
-    compiled("read_rows")(time_s, np.ascontiguousarray(tension), at_s, seen)
+    compiled("between_rows")(time_s, np.ascontiguousarray(tension), at_s, seen)
     return seen

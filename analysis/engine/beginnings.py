@@ -42,25 +42,25 @@ def begun_otherwise(system: System, at: Array) -> Followed | None:
         Where one of the draws has led to, up to `TOLD`. None: no draw did, or parameters do not
         even foretell the beginning.
     """
-    way = _led(system, at, BEGINNING)
+    samples = Samples(system, everything=True)
+    way = _led(samples, at, BEGINNING)
     if way.left(BEGINNING) > way.allowed(BEGINNING):
         return None
-    samples = Samples(system, everything=True)
     columns, _ = differences(samples, way.at, way.here, BEGINNING)
     known = columns @ columns.T + np.eye(len(columns))
     root = np.linalg.inv(np.linalg.cholesky(known)).T
     generator = np.random.default_rng(0)
     for _ in range(TRIES):
         drawn = way.at.nuisance + root @ generator.standard_normal(len(root))
-        found = _led(system, drawn, TOLD)
-        if found.left(TOLD) < found.allowed(TOLD) and not found.strained(TOLD):
+        found = _led(samples, drawn, TOLD)
+        if not found.strained(TOLD):
             return found.at
     return None
 
 
-def _led(system: System, at: Array, upto: float) -> Way:
+def _led(samples: Samples, at: Array, upto: float) -> Way:
     """Parameters alone, led over windows up to a share of the time, as long as they foretell it."""
-    way = Way(Samples(system, everything=True), Followed(at, None))
+    way = Way(samples, Followed(at, None))
     for share in WINDOWS:
         if share > upto:
             break

@@ -143,8 +143,8 @@ class Way:
 
     def strained(self, share: float) -> bool:
         """Whether parameters make up for something that is left out."""
-        strain = self._known.cost(self.at.numbers)
-        return strain > STRAIN or self.left(share) > self.allowed(share)
+        to_the_noise = self.left(share) <= self.allowed(share)
+        return not to_the_noise or self._known.cost(self.at.numbers) > STRAIN
 
     def allowed(self, share: float) -> float:
         """What noise may leave of a sample up to a share of the time."""
