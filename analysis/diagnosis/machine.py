@@ -1,6 +1,7 @@
 """CDPR-8 as a system for the engine: runs of one machine, simulated as they were recorded."""
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -104,6 +105,22 @@ class RecordedMachine:
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
         self.peaks_n = self._peaks()
+
+    def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
+        """The same machine, where less of its recordings counts.
+
+        Parameters
+        ----------
+        bundles
+            Its bundles, in which segments may end earlier.
+        """
+        left = iter(bundles)
+        found = copy(self)
+        found.bundles = tuple(bundles)
+        found.recordings = tuple(
+            replace(one, bundles=tuple(next(left) for _ in one.bundles)) for one in self.recordings
+        )
+        return found
 
     @property
     def nuisances(self) -> Sequence[Nuisance]:

@@ -27,18 +27,22 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
 
     judgement, search = diagnosis.judgement, diagnosis.search
     problem = diagnosis.calibrated.problem
+    named = judgement is not None and bool(judgement.chosen.hypothesis.parts)
     if judgement is None or search is None:
-        before = after = Point(diagnosis.calibrated.at)
+        points = (Point(diagnosis.calibrated.at),) * 2
         left = (problem.residual, problem.residual)
     else:
-        before, after = search.null.point, judgement.chosen.point
-        left = (search.null.problem.residual, judgement.chosen.problem.residual)
+        after = judgement.chosen
+        # Where nothing is on, what is judged is led to the phase of the ring, where that could be.
+        before = search.null if named else after
+        points = (before.point, after.point)
+        left = (before.problem.residual, after.problem.residual)
     lines = [_harmonics(machine, problem.labels, one) for one in left]
     records, channels = [], []
     first = 0
     for place, recording in enumerate(machine.recordings):
-        shown, plain = _seen(machine, before, place)
-        better, cables = _seen(machine, after, place)
+        shown, plain = _seen(machine, points[0], place)
+        better, cables = _seen(machine, points[1], place)
         excitation = recording.excitation
         records.append(
             Record(
@@ -76,7 +80,6 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
                     )
                 )
         first += len(recording.bundles)
-    named = judgement is not None and bool(judgement.chosen.hypothesis.parts)
     return Pictures(tuple(records), tuple(channels), named)
 
 

@@ -14,6 +14,7 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
 from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
 from analysis.engine.finder import Tell
+from analysis.engine.until import Until
 from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 
@@ -32,7 +33,7 @@ class RunDiagnosis:
     Attributes
     ----------
     machine
-        The runs as a system.
+        The runs as a system, as far as they count.
     diagnosis
         What the engine found.
     statement
@@ -81,6 +82,8 @@ def diagnose_recordings(
     with one_thread_each():
         machine = RecordedMachine(recordings, effects, workers)
         diagnosis = diagnose(machine, stop_after=stop_after, tell=tell)
+    if isinstance(diagnosis.system, Until):
+        machine = machine.looked_at_in(diagnosis.system.bundles)
     said = statement(machine, diagnosis)
     improved = None
     if results is not None:

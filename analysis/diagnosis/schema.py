@@ -50,6 +50,9 @@ class Remains(Open):
     not_followed: list[str] = Field(
         default=[], description="runs that the causes do not explain; they were not counted"
     )
+    foretold_until_s: float | None = Field(
+        default=None, description="what was recorded later was not counted: nothing foretells it"
+    )
 
 
 class Parts(Open):

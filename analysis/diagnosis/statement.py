@@ -12,6 +12,7 @@ from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.locate import Finding
 from analysis.engine.system import Candidate
+from analysis.engine.until import Until
 
 WHEN = {
     "pulley_coulomb": "velocity reversal",
@@ -41,7 +42,7 @@ NOT_RULED_OUT = 0.1
 def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
     """The JSON of design, section 6, as a dictionary."""
     sides = {one.name: one.side for one in machine.candidates}
-    judgement, remains = diagnosis.judgement, diagnosis.remains
+    judgement, remains, system = diagnosis.judgement, diagnosis.remains, diagnosis.system
     causes = [] if judgement is None else [_cause(one, sides, machine) for one in judgement.causes]
     likely: list[dict[str, Any]] = []
     if judgement is not None and diagnosis.search is not None and diagnosis.verdict == "none":
@@ -56,13 +57,17 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
             "where": where(remains.findings) if remains and remains.significant else None,
             "misfit": None if remains is None else remains.misfit,
             "not_followed": [] if diagnosis.search is None else list(diagnosis.search.aside),
+            "foretold_until_s": system.end_s if isinstance(system, Until) else None,
         },
         "fit": _fit(machine, diagnosis.confirmation),
         "located": [_finding(one) for one in diagnosis.findings],
         "parameters": moved_parameters(machine, diagnosis),
         "next_experiment": None,
         "improved_rig": None,
-        "notes": [f"{one.run.name}: {note}" for one in machine.recordings for note in one.notes],
+        "notes": [
+            *(f"{one.run.name}: {note}" for one in machine.recordings for note in one.notes),
+            *diagnosis.notes,
+        ],
     }
     return said
 

@@ -60,8 +60,10 @@ def headline(said: Statement) -> str:
     names = listed([short(one["effect"]) for one in causes])
     verdict = said["verdict"]
     if verdict == "none":
+        until_s = said["remains"].get("foretold_until_s")
+        first = "Nothing" if until_s is None else f"Up to {until_s:.1f} s nothing"
         return (
-            "Nothing was left out that these runs show: simulation and recording agree once the "
+            f"{first} was left out that these runs show: simulation and recording agree once the "
             "rig file's numbers move within what is known of them."
         )
     if verdict == "parameter":
@@ -222,8 +224,10 @@ def _far_from_noise(said: Statement) -> bool:
 def _remains(said: Statement) -> list[str]:
     remains = said["remains"]
     told = []
+    if (until_s := remains.get("foretold_until_s")) is not None:
+        told = [f"What was recorded after {until_s:.1f} s, nothing foretells: it did not count."]
     if aside := remains.get("not_followed"):
-        told = [
+        told += [
             f"With this, {listed(aside)} could not be followed to the end and did not count: there "
             "the law is not what the machine does."
         ]

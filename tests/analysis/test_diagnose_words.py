@@ -158,6 +158,16 @@ def test_runs_that_did_not_count_are_told() -> None:
     assert "did not count" not in paragraph(statement())
 
 
+def test_what_nothing_foretells_is_told_to_have_not_counted() -> None:
+    said = statement("none", [])
+    assert "foretells" not in paragraph(said)
+    assert headline(said).startswith("Nothing was left out")
+    said["remains"] = {**said["remains"], "foretold_until_s": 6.3}
+    assert headline(said).startswith("Up to 6.3 s nothing was left out")
+    assert "What was recorded after 6.3 s, nothing foretells: it did not count." in paragraph(said)
+    Statement.model_validate(said)
+
+
 def test_a_fit_far_from_the_noise_is_not_told_as_if_it_were_good() -> None:
     fit = statement()["fit"]
     fit["after"] = {"used": {"tension": 14.0}, "held_out": {"tension": 15.0}}

@@ -11,6 +11,7 @@ from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import seen_by
 from analysis.engine.system import Point, Ringing
+from analysis.engine.until import Until
 from cdpr8.rigfile import Excitation
 from model.simulator import run
 
@@ -43,6 +44,22 @@ def test_a_cell_clips_below_the_highest_tension_that_was_simulated_or_recorded(
     assert more.peaks_n[6] > plain.peaks_n[6] + 0.9
     assert less.peaks_n[6] == pytest.approx(plain.peaks_n[6], abs=0.05)
     assert more.peaks_n[:6] == plain.peaks_n[:6]
+
+
+def test_where_less_counts_a_machine_is_looked_at_in_less_and_simulated_as_before(
+    recorded: Recording,
+) -> None:
+    whole = RecordedMachine([recorded, recorded], NAMES, workers=1)
+    cut = Until(whole, 0.5)
+    machine = whole.looked_at_in(cut.bundles)
+    for one in machine.recordings:
+        ends = [segment.end_s for bundle in one.bundles for segment in bundle.segments]
+        assert max(ends) == cut.end_s < recorded.bundles[0].segments[-1].end_s
+    assert machine.bundles == tuple(b for one in machine.recordings for b in one.bundles)
+    assert whole.recordings == (recorded, recorded)
+    nominal = Point(np.zeros(len(machine.nuisances)))
+    (left,), (all_,) = (one.simulate([nominal], lambda found: found) for one in (machine, whole))
+    assert all(np.array_equal(a, b) for a, b in zip(left, all_, strict=True))
 
 
 def test_the_machine_says_how_stiffness_moves_its_tones(recorded: Recording) -> None:
