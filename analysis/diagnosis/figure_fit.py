@@ -133,8 +133,8 @@ def _course(
 def _rest(axes: "Axes", one: Channel, window: tuple[float, float], look: Look, named: bool) -> None:
     inside = (one.t_s >= window[0]) & (one.t_s <= window[1])
     factor, unit, _ = shown(one)
-    axes.axhspan(-2 * factor * one.noise, 2 * factor * one.noise, color=look.ink, alpha=0.25, lw=0)
-    t_s = one.t_s[inside]
+    t_s, noise = one.t_s[inside], 2.0 * factor * one.sigma[inside]
+    axes.fill_between(t_s, -noise, noise, color=look.ink, alpha=0.25, lw=0)
     off = factor * (one.recorded - one.before)[inside]
     axes.plot(t_s, off, ".-", color=look.before, markersize=3, linewidth=0.8)
     if named:

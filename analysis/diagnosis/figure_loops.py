@@ -66,7 +66,8 @@ def speeds(pictures: Pictures, record: str, look: Look) -> "Figure":
         inside = run.steady(one.t_s)
         rate = 1e3 * one.rate_m_per_s[inside]
         axes.axhline(0.0, color=look.ink, linewidth=0.8)
-        axes.axhspan(-2 * one.noise, 2 * one.noise, color=look.faint)
+        at, noise, _ = _binned(rate, 2.0 * one.sigma[inside], SPEEDS)
+        axes.fill_between(at, -noise, noise, color=look.faint, lw=0)
         for stage, colour in stages if pictures.named else stages[:1]:
             off = (one.recorded - getattr(one, stage))[inside]
             at, mean, spread = _binned(rate, off, SPEEDS)

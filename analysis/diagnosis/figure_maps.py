@@ -88,7 +88,7 @@ def by_phase(pictures: Pictures, record: str, stage: str) -> Array:
     for one in pictures.of(record):
         inside = run.steady(one.t_s)
         place = (run.phase(one.t_s[inside]) * PHASES).astype(int) % PHASES
-        off = (one.recorded - getattr(one, stage))[inside] / one.noise
+        off = (one.recorded - getattr(one, stage))[inside] / one.sigma[inside]
         count = np.bincount(place, minlength=PHASES)
         rows.append(np.bincount(place, off, minlength=PHASES) / np.maximum(count, 1))
     return np.stack(rows)

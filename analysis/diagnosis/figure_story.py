@@ -138,7 +138,8 @@ def _cycle(axes: "Axes", one: Channel, run: Record, stage: str, head: str, look:
 
 def _residual(axes: "Axes", one: Channel, run: Record, stages: list[str], look: Look) -> None:
     factor, unit, _ = shown(one)
-    axes.axhspan(-2 * factor * one.noise, 2 * factor * one.noise, color=look.ink, alpha=0.25, lw=0)
+    at, noise, _ = mean_cycle(run, one.t_s, 2.0 * factor * one.sigma)
+    axes.fill_between(at, -noise, noise, color=look.ink, alpha=0.25, lw=0)
     for stage in stages:
         off = factor * (one.recorded - getattr(one, stage))
         at, mean, spread = mean_cycle(run, one.t_s, off)

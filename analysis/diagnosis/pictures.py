@@ -15,6 +15,7 @@ FILE = "diagnose.npz"
 _ARRAYS = (
     "t_s",
     "recorded",
+    "sigma",
     "before",
     "after",
     "elongation_before_m",
@@ -81,12 +82,10 @@ class Channel:
     ----------
     record, kind, name, unit
         Whose it is. Positions in m, angles in rad, tensions in N.
-    noise
-        Standard deviation of one sample.
     cable, stiffness_n_per_m
         Of a tension; 0 of a pose.
-    t_s, recorded
-        The samples, shape (n,).
+    t_s, recorded, sigma
+        The samples, and the standard deviation of each, that of its instant included, shape (n,).
     before, after
         Simulated with nothing left out and with the causes in, shape (n,).
     elongation_before_m
@@ -102,11 +101,11 @@ class Channel:
     kind: str
     name: str
     unit: str
-    noise: float
     cable: int
     stiffness_n_per_m: float
     t_s: Array
     recorded: Array
+    sigma: Array
     before: Array
     after: Array
     elongation_before_m: Array
@@ -114,6 +113,11 @@ class Channel:
     rate_m_per_s: Array
     harmonics_before: Array = field(default_factory=lambda: np.zeros(0))
     harmonics_after: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of a sample, on average."""
+        return float(np.sqrt(np.mean(self.sigma**2)))
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
         What was found.
     """
     from analysis.engine.system import Point
+    from analysis.engine.whiten import sigmas_of
 
     judgement, search = diagnosis.judgement, diagnosis.search
     problem = diagnosis.calibrated.problem
@@ -55,6 +56,7 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
             )
         )
         for b, bundle in enumerate(recording.bundles):
+            sigmas = sigmas_of(bundle)
             for c, name in enumerate(bundle.names):
                 cable = recording.cables[b] if bundle.kind == "tension" else 0
                 stiffness = recording.rig.cable[cable - 1].stiffness_n_per_m.value if cable else 0.0
@@ -65,11 +67,11 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
                         kind=bundle.kind,
                         name=name,
                         unit=bundle.units[c],
-                        noise=float(np.sqrt(bundle.covariance[c, c])),
                         cable=cable,
                         stiffness_n_per_m=stiffness,
                         t_s=bundle.t_s,
                         recorded=bundle.value[:, c],
+                        sigma=sigmas[:, c],
                         before=shown[b][:, c],
                         after=better[b][:, c],
                         elongation_before_m=state[0],

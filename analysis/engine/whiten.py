@@ -46,6 +46,18 @@ class Whiten:
         return np.asarray(white)
 
 
+def sigmas_of(bundle: Bundle) -> Array:
+    """Standard deviation of each sample, that of its instant included, shape (n, m).
+
+    Parameters
+    ----------
+    bundle
+        The samples.
+    """
+    power = np.zeros_like(bundle.value) if bundle.jitter is None else bundle.jitter**2
+    return np.asarray(np.sqrt(np.diag(bundle.covariance) + power))
+
+
 def covariance_over(bundle: Bundle, inside: NDArray[np.bool_] | NDArray[np.int64]) -> Array:
     """Covariance of the noise of one sample, that of instants included, on average, shape (m, m).
 

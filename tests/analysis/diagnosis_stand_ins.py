@@ -32,12 +32,13 @@ def pictures() -> Pictures:
     spring = 30.0 + STIFFNESS * elongation
     rubbing = spring + FRICTION_N * np.sign(rate)
     noise = NOISE_N * np.random.default_rng(1).standard_normal(len(t_s))
+    sigma = np.full_like(t_s, NOISE_N)
     lines = np.ones(11)
     off = np.array([1.0, 200.0, 1.0, 70.0, 1.0, 40.0, 1.0, 20.0, 1.0, 10.0, 1.0])
     channels = [
         Channel(
-            "hand", "tension", f"tension {cable}", "N", NOISE_N, cable, STIFFNESS,
-            t_s, rubbing + noise, spring, rubbing, elongation, elongation, rate, off, lines,
+            "hand", "tension", f"tension {cable}", "N", cable, STIFFNESS,
+            t_s, rubbing + noise, sigma, spring, rubbing, elongation, elongation, rate, off, lines,
         )
         for cable in (1, 2)
     ]  # fmt: skip
@@ -46,8 +47,8 @@ def pictures() -> Pictures:
     pitch = np.deg2rad(1.92) * np.sin(angle[::6]) * (frames >= 1.0)
     channels.append(
         Channel(
-            "hand", "pose", "pitch_deg", "rad", 1e-4, 0, 0.0, frames, pitch, pitch * 2.03 / 1.92,
-            pitch, none, none, none, off, lines,
+            "hand", "pose", "pitch_deg", "rad", 0, 0.0, frames, pitch, np.full_like(pitch, 1e-4),
+            pitch * 2.03 / 1.92, pitch, none, none, none, off, lines,
         )
     )  # fmt: skip
     return Pictures((record,), tuple(channels), True)

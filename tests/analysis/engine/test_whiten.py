@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.engine.system import Array, Bundle
-from analysis.engine.whiten import Whiten, covariance_over, noise_leaves
+from analysis.engine.whiten import Whiten, covariance_over, noise_leaves, sigmas_of
 
 NOISE, INSTANT_S, TONE_HZ = 0.01, 5e-4, 20.0
 T_S = np.arange(0.0, 40.0, 0.01)
@@ -36,6 +36,7 @@ def test_steep_and_flat_samples_are_alike_once_their_instants_count(channels: in
     bundle, residual = swinging(channels)
     white = Whiten(bundle)(residual)
     assert np.atleast_2d(np.cov(white.T)) == pytest.approx(np.eye(channels), abs=0.1)
+    assert np.mean((residual / sigmas_of(bundle)) ** 2, axis=0) == pytest.approx(1.0, abs=0.1)
     assert bundle.jitter is not None
     steep = np.abs(bundle.jitter[:, 0]) > np.median(np.abs(bundle.jitter[:, 0]))
     assert np.mean(white[steep] ** 2) == pytest.approx(np.mean(white[~steep] ** 2), rel=0.15)
