@@ -101,6 +101,16 @@ class Machine:
         """
         return float(self._per_inertia(damping_n_s_per_m).max()) if damping_n_s_per_m.any() else 0.0
 
+    def fastest_tone_rad_per_s(self, stiffer_n_per_m: Array) -> float:
+        """The platform's highest tone with springs beside its cables.
+
+        Parameters
+        ----------
+        stiffer_n_per_m
+            Shape (8,).
+        """
+        return float(np.sqrt(max(self._per_inertia(self.stiffness + stiffer_n_per_m).max(), 0.0)))
+
     def _per_inertia(self, along_cables: Array) -> Array:
         """Eigenvalues of M^-1 J_A^T c J_A, c a law of each cable along itself, shape (6,)."""
         direction = (self.base - self.anchor) / self.rest_length[:, None]

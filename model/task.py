@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import signature
-from typing import Self
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,8 +164,10 @@ class Task:
         of_tones_s = method.step_s(self._highest_tone_hz, thrifty=thrifty)
         decay = self._fastest_decay_1_per_s
         of_decay_s = max(method.stable / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
+        stuck = self._stuck_rad_per_s
+        of_stuck_s = max(method.turn_rad / stuck, SHORTEST_STEP_S) if stuck > 0.0 else np.inf
         switches = [one.effect.longest_step_s or np.inf for one in self.acting]
-        return float(min([of_tones_s, of_decay_s, *switches]))
+        return float(min([of_tones_s, of_decay_s, of_stuck_s, *switches]))
 
     @cached_property
     def _highest_tone_hz(self) -> float:
@@ -174,14 +176,23 @@ class Task:
     @cached_property
     def _fastest_decay_1_per_s(self) -> float:
         """How fast the steepest friction brings the platform to rest."""
-        machine = self.machine
-        steepest = np.zeros(machine.cables)
+        return self.machine.fastest_decay_1_per_s(self._slopes("steepest"))
+
+    @cached_property
+    def _stuck_rad_per_s(self) -> float:
+        """The quickest tone of the platform while all that can stick does; 0: nothing can."""
+        springs = self._slopes("stiffest")
+        return self.machine.fastest_tone_rad_per_s(springs) if springs.any() else 0.0
+
+    def _slopes(self, law: Literal["steepest", "stiffest"]) -> Array:
+        """What that law of all effects adds up to in each cable, shape (8,)."""
+        found = np.zeros(self.machine.cables)
         for one in self.acting:
-            if one.effect.steepest is not None:
-                known = dict(one.columns()) | {"pretension": machine.pretension}
-                wanted = signature(one.effect.steepest).parameters
-                steepest += one.effect.steepest(**{name: known[name] for name in wanted})
-        return machine.fastest_decay_1_per_s(steepest)
+            slope = getattr(one.effect, law)
+            if slope is not None:
+                known = dict(one.columns()) | {"pretension": self.machine.pretension}
+                found += slope(**{name: known[name] for name in signature(slope).parameters})
+        return found
 
     def thrifty(self, output_rate_hz: float) -> tuple[str, float]:
         """The method and step that evaluate the right-hand side least often for a fit.

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
 from model.library.effect import Acts, Effect, Parameter, State
 
 
@@ -11,20 +11,27 @@ def pull(
     wrap_rad: Any,
     presliding_m: Any,
     bristle_loss_s: Any,
+    bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
     elastic: Any,
+    pretension: Any,
 ) -> Any:
-    """T (exp(mu theta (z + t_b z')) - 1), by its series: 2e-6 of T at mu theta = 0.3."""
-    rate = bent(bristle, axial_velocity, presliding_m, 1.0)
-    a = friction * wrap_rad * (bristle + bristle_loss_s * rate)
-    series = 1.0 + a / 2.0 * (1.0 + a / 3.0 * (1.0 + a / 4.0 * (1.0 + a / 5.0)))
-    return elastic * a * series
+    """T (exp(mu theta (z + t_b z')) - 1), less what it holds at rest."""
+    rate = rates(presliding_m, bent_at_rest, bristle, axial_velocity)
+    grip = friction * wrap_rad
+    now = _more(grip * (bristle + bent_at_rest + bristle_loss_s * rate))
+    return elastic * now - pretension * _more(grip * bent_at_rest)
 
 
-def rates(presliding_m: Any, bristle: Any, axial_velocity: Any) -> Any:
+def _more(a: Any) -> Any:
+    """exp(a) - 1 by its series: 2e-6 off at 0.3."""
+    return a * (1.0 + a / 2.0 * (1.0 + a / 3.0 * (1.0 + a / 4.0 * (1.0 + a / 5.0))))
+
+
+def rates(presliding_m: Any, bent_at_rest: Any, bristle: Any, axial_velocity: Any) -> Any:
     """Z follows sgn v within x_s."""
-    return bent(bristle, axial_velocity, presliding_m, 1.0)
+    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
 
 
 def steepest(
@@ -34,11 +41,16 @@ def steepest(
     return 2.0 * pretension * friction * wrap_rad * bristle_loss_s / presliding_m
 
 
+def stiffest(friction: Any, wrap_rad: Any, presliding_m: Any, pretension: Any) -> Any:
+    """Give mu theta T / x_s, with the same room."""
+    return 2.0 * pretension * friction * wrap_rad / presliding_m
+
+
 EFFECT = Effect(
     name="pulley_capstan",
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += T (exp(mu theta (z + t_b z')) - 1), "
+    equation="T += T (exp(mu theta (z + t_b z')) - 1) - T_0 (exp(mu theta z_0) - 1), "
     "z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
@@ -48,10 +60,12 @@ EFFECT = Effect(
         Parameter("wrap_rad", "rad", 1.5708, 0.1, 6.2832, "theta, angle of contact"),
         Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
+        BENT_AT_REST,
     ),
-    states=(State("bristle", "1", "z, the bent bristle"),),
+    states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),
     pull=pull,
     steepest=steepest,
+    stiffest=stiffest,
     rates=rates,
     longest_step_s=1.6e-3,
     cost="a bristle turns over within 0.25 ms at the least; twice the steps",

@@ -2,21 +2,26 @@
 
 from typing import Any
 
-from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
 from model.library.effect import Acts, Effect, Parameter, State
 
 
 def pull(
-    coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any, bristle: Any, axial_velocity: Any
+    coulomb_n: Any,
+    presliding_m: Any,
+    bristle_loss_s: Any,
+    bent_at_rest: Any,
+    bristle: Any,
+    axial_velocity: Any,
 ) -> Any:
-    """F_c (z + t_b z'): the tension at the platform is higher while the cable is drawn out."""
-    rate = bent(bristle, axial_velocity, presliding_m, 1.0)
+    """F_c (z - z_0 + t_b z'): the tension at the platform is higher while the cable is drawn."""
+    rate = rates(presliding_m, bent_at_rest, bristle, axial_velocity)
     return coulomb_n * (bristle + bristle_loss_s * rate)
 
 
-def rates(presliding_m: Any, bristle: Any, axial_velocity: Any) -> Any:
+def rates(presliding_m: Any, bent_at_rest: Any, bristle: Any, axial_velocity: Any) -> Any:
     """Z follows sgn v within x_s."""
-    return bent(bristle, axial_velocity, presliding_m, 1.0)
+    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
 
 
 def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
@@ -24,11 +29,16 @@ def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
     return coulomb_n * bristle_loss_s / presliding_m
 
 
+def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:
+    """F_c / x_s, of a bristle that sticks."""
+    return coulomb_n / presliding_m
+
+
 EFFECT = Effect(
     name="pulley_coulomb",
     title="Coulomb friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z + t_b z'), z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
+    equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
     source="Coulomb (1785); sticks as by Canudas de Wit et al., IEEE TAC 40 (1995) 419; Olsson et "
     "al., Eur. J. Control 4 (1998) 176",
     signature="step at velocity reversal; odd harmonics as 1/n; quadrature 4 F_c / pi, whatever "
@@ -37,10 +47,12 @@ EFFECT = Effect(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
         Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
+        BENT_AT_REST,
     ),
-    states=(State("bristle", "1", "z, the bent bristle"),),
+    states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),
     pull=pull,
     steepest=steepest,
+    stiffest=stiffest,
     rates=rates,
     longest_step_s=1.6e-3,
     cost="a bristle turns over within 0.25 ms at the least; twice the steps",

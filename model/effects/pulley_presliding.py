@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import smooth_sign
 
@@ -14,15 +14,17 @@ def rates(
     coulomb_n: Any,
     presliding_m: Any,
     far_share: Any,
+    bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
     stiffness: Any,
 ) -> Any:
     """Give z' = (s' - |s'| z) / x_s, with s' the share of v that reaches the slider."""
-    toward = 1.0 - bristle * smooth_sign(axial_velocity, ROUNDING_M_PER_S)
+    z = bristle + bent_at_rest
+    toward = 1.0 - z * smooth_sign(axial_velocity, ROUNDING_M_PER_S)
     held = coulomb_n * far_share * (1.0 - far_share) * toward / (presliding_m * stiffness)
     slip = far_share * axial_velocity / (1.0 + held)
-    return bent(bristle, slip, presliding_m, 1.0)
+    return bent(z, slip, presliding_m, 1.0)
 
 
 def behind(
@@ -30,12 +32,15 @@ def behind(
     presliding_m: Any,
     far_share: Any,
     bristle_loss_s: Any,
+    bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
     stiffness: Any,
 ) -> Any:
-    """F_c (z + t_b z'): the whole of it stands between the two sides of the pulley."""
-    rate = rates(coulomb_n, presliding_m, far_share, bristle, axial_velocity, stiffness)
+    """F_c (z - z_0 + t_b z'): the whole of it stands between the two sides of the pulley."""
+    rate = rates(
+        coulomb_n, presliding_m, far_share, bent_at_rest, bristle, axial_velocity, stiffness
+    )
     return coulomb_n * (bristle + bristle_loss_s * rate)
 
 
@@ -44,6 +49,7 @@ def pull(
     presliding_m: Any,
     far_share: Any,
     bristle_loss_s: Any,
+    bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
     stiffness: Any,
@@ -54,6 +60,7 @@ def pull(
         presliding_m,
         far_share,
         bristle_loss_s,
+        bent_at_rest,
         bristle,
         axial_velocity,
         stiffness,
@@ -65,11 +72,16 @@ def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
     return coulomb_n * bristle_loss_s / presliding_m
 
 
+def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:
+    """F_c / x_s, of a bristle that sticks."""
+    return coulomb_n / presliding_m
+
+
 EFFECT = Effect(
     name="pulley_presliding",
     title="presliding friction at the pulley, cable elastic on both sides",
     acts=Acts.PULLEY,
-    equation="T += r F_c (z + t_b z'), z' = (s' - |s'| z)/sqrt(x_s^2 + (s' t)^2), s' = r v / "
+    equation="T += r F_c (z - z_0 + t_b z'), z' = (s' - |s'| z)/sqrt(x_s^2 + (s' t)^2), s' = r v / "
     "(1 + F_c r (1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 0.25 ms",
     source="Dahl, Aerospace Corp. TOR-0158 (1968); Canudas de Wit et al., IEEE TAC 40 (1995) 419",
     signature="rounded reversal; a loop at small amplitude; below x_s it looks like stiffness",
@@ -78,12 +90,14 @@ EFFECT = Effect(
         Parameter("presliding_m", "m", 6e-4, 2e-4, 5e-3, "x_s"),
         Parameter("far_share", "1", 1.0, 0.05, 1.0, "r: the give beyond the pulley, of all"),
         BRISTLE_LOSS,
+        BENT_AT_REST,
     ),
-    states=(State("bristle", "1", "z, the bent bristle"),),
+    states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),
     pull=pull,
     behind=behind,
     rates=rates,
     steepest=steepest,
+    stiffest=stiffest,
     longest_step_s=3.1e-3,
     cost="a bristle that is short and loses much needs steps to suit",
 )

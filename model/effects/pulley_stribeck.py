@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.bristle import BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import gaussian
 
@@ -11,12 +11,13 @@ def rates(
     static_ratio: Any,
     stribeck_m_per_s: Any,
     presliding_m: Any,
+    bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
     """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2)."""
     level = 1.0 + (static_ratio - 1.0) * gaussian(axial_velocity / stribeck_m_per_s)
-    return bent(bristle, axial_velocity, presliding_m, level)
+    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level)
 
 
 def pull(
@@ -25,11 +26,14 @@ def pull(
     stribeck_m_per_s: Any,
     presliding_m: Any,
     bristle_loss_s: Any,
+    bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
-    """F_c (z + t_b z'), z up to F_s / F_c."""
-    rate = rates(static_ratio, stribeck_m_per_s, presliding_m, bristle, axial_velocity)
+    """F_c (z - z_0 + t_b z'), z up to F_s / F_c."""
+    rate = rates(
+        static_ratio, stribeck_m_per_s, presliding_m, bent_at_rest, bristle, axial_velocity
+    )
     return coulomb_n * (bristle + bristle_loss_s * rate)
 
 
@@ -38,11 +42,16 @@ def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
     return coulomb_n * bristle_loss_s / presliding_m
 
 
+def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:
+    """F_c / x_s, of a bristle that sticks."""
+    return coulomb_n / presliding_m
+
+
 EFFECT = Effect(
     name="pulley_stribeck",
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z + t_b z'), z' = (v - |v| z/g)/sqrt(x_s^2 + (v t)^2), "
+    equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z/g)/sqrt(x_s^2 + (v t)^2), "
     "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), t = 0.25 ms",
     source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
     "Automatica 30 (1994) 1083",
@@ -54,10 +63,12 @@ EFFECT = Effect(
         Parameter("stribeck_m_per_s", "m/s", 8e-3, 1e-3, 0.05, "v_st"),
         Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
+        BENT_AT_REST,
     ),
-    states=(State("bristle", "1", "z, the bent bristle"),),
+    states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),
     pull=pull,
     steepest=steepest,
+    stiffest=stiffest,
     rates=rates,
     longest_step_s=1.6e-3,
     cost="a bristle turns over within 0.25 ms at the least; twice the steps",

@@ -17,8 +17,13 @@ CATCHES_S = 2.5e-4
 than what the rest of a machine asks for. About a reversal, where cables are slow, it is nothing."""
 
 BRISTLE_LOSS = Parameter(
-    "bristle_loss_s", "s", 5e-4, 1e-5, 1e-2, "t_b, loss of the bristle over its stiffness"
+    "bristle_loss_s", "s", 5e-4, 0.0, 1e-2, "t_b, loss of the bristle over its stiffness"
 )
+
+BENT_AT_REST = Parameter(
+    "bent_at_rest", "1", 0.0, -1.0, 1.0, "z_0, z at rest; what it holds there is pretension"
+)
+"""The state of a bristle is z - z_0, which begins at zero: whatever came before left it bent."""
 
 
 def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:

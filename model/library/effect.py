@@ -133,6 +133,9 @@ class Effect:
     steepest
         Plant: the largest slope of the tension over the speed of the cable, N s/m: a slope that
         damps faster than a step can follow makes it unstable.
+    stiffest
+        Plant: the largest slope of the tension over the elongation beside the cable's own, N/m, as
+        of a bristle that sticks: an explicit step must not make its tone grow.
     longest_step_s
         The integrator must not step over a switch this sharp; None where it is smooth.
     cost
@@ -157,6 +160,7 @@ class Effect:
     measure: Law | None = None
     order: int = 0
     steepest: Law | None = None
+    stiffest: Law | None = None
     longest_step_s: float | None = None
     cost: str = ""
 

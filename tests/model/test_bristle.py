@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cdpr8.rigfile import load_rig, packaged_rig_path
+from cdpr8.rigfile import Excitation, load_rig, packaged_rig_path
 from model import ActiveEffect, simulate
 from model.library.discovery import library
 from model.library.smooth import gaussian
@@ -62,3 +62,30 @@ def test_the_default_steps_follow_a_reversal_far_closer_than_a_cell_sees(name: s
     off = usual.tension_n - close.tension_n
     # A cell's noise is some 5 mN.
     assert float(np.sqrt(np.mean(off**2))) < 1e-3
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+@pytest.mark.parametrize("bent", [-0.6, 0.8])
+def test_what_a_bristle_held_at_rest_is_missing_once_it_has_turned_over(
+    name: str, bent: float
+) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 20.0 * numbers["presliding_m"]
+    plain = cable_response(effect, {}, amplitude_m)
+    left = cable_response(effect, {"bent_at_rest": bent}, amplitude_m)
+    slides = 0.5 * (plain.force.max() - plain.force.min())
+    level = 1.0 if name != "pulley_stribeck" else 1.0 / numbers["static_ratio"]
+    assert plain.mean - left.mean == pytest.approx(bent * level * slides, rel=0.15)
+    assert left.force - left.mean == pytest.approx(plain.force - plain.mean, abs=0.02 * slides)
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_a_bristle_bent_at_rest_holds_nothing_beside_the_pretension(name: str) -> None:
+    effect = ActiveEffect(name, {"bent_at_rest": 0.7})
+    rig = load_rig(packaged_rig_path())
+    still = Excitation(rest_s=0.5, motion_s=0.1, ramp_s=0.05)
+    found = simulate(rig, excitation=still, effects=[effect])
+    at_rest = found.t_s < 0.4
+    drift = found.tension_n[at_rest] - found.tension_n[0]
+    assert np.abs(drift).max() < 0.01 * 0.7 * 0.3

@@ -69,6 +69,25 @@ def test_no_effect_errs_by_more_than_its_usual_step_makes_it(rig: Rig, effect: E
         assert missed[0] < max(0.1 * NOISE_N, 3.0 * missed[1])
 
 
+@pytest.mark.parametrize(
+    ("name", "presliding_m"),
+    [("pulley_coulomb", 2.5e-5), ("pulley_stribeck", 5e-5), ("pulley_presliding", 2e-4)],
+)
+def test_a_platform_on_cables_that_stick_does_not_ring_up(
+    rig: Rig, name: str, presliding_m: float
+) -> None:
+    """What holds 1 N within 25 um is as stiff as thirty cables: steps must suit its tone too."""
+    numbers = {"coulomb_n": 1.0, "presliding_m": presliding_m, "bristle_loss_s": 0.0}
+    short = Excitation(rest_s=0.3, motion_s=1.0, ramp_s=0.3)
+    task = Task(rig, short, effects=[ActiveEffect(name, numbers)])
+    exact = run(task, step_s=1e-4, output_rate_hz=RATE_HZ).tension_n
+    method, step_s = task.thrifty(RATE_HZ)
+    missed = run(task, method, step_s, RATE_HZ).tension_n - exact
+    assert np.sqrt(np.mean(missed**2)) < NOISE_N
+    too_long = run(task, "dp5", 1.5e-3, RATE_HZ).tension_n - exact
+    assert np.sqrt(np.mean(too_long**2)) >= np.sqrt(np.mean(missed**2))
+
+
 def test_lanes_of_a_fit_do_not_depend_on_what_stands_beside_them(rig: Rig) -> None:
     """What is off in a lane has its states there all the same, which must stay at rest."""
     tasks = [task_with(rig, effect.name) for effect in IN_KERNEL]
