@@ -29,16 +29,22 @@ class Policy:
     shapes
         Numbers that are fitted, each with the values that are tried in screening; the others keep
         their default.
+    begins
+        Numbers of the state in which each cable begins a run: fitted for each cable and run.
     form_share
         Error of form; None: by the side it acts on.
     """
 
     steps: Mapping[str, float] = field(default_factory=dict)
     shapes: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    begins: tuple[str, ...] = ()
     form_share: float | None = None
 
 
-BRISTLE_LOSS: dict[str, tuple[float, ...]] = {"bristle_loss_s": (5e-4,)}
+def _friction(**shapes: tuple[float, ...]) -> Policy:
+    """Of a law whose bristles were left bent by what came before the run."""
+    return Policy(shapes={**shapes, "bristle_loss_s": (5e-4,)}, begins=("bent_at_rest",))
+
 
 POLICIES: dict[str, Policy] = {
     "air_drag": Policy(shapes={"arm_m": (0.15,)}),
@@ -55,12 +61,11 @@ POLICIES: dict[str, Policy] = {
     "cable_modes": Policy(form_share=0.4),
     "cable_end_forcing": Policy(form_share=0.2),
     "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0), "frame_loss": (0.03,)}),
-    "pulley_coulomb": Policy(shapes={"presliding_m": (5e-5,)} | BRISTLE_LOSS),
-    "pulley_capstan": Policy(shapes={"presliding_m": (5e-5,)} | BRISTLE_LOSS),
-    "pulley_presliding": Policy(shapes={"presliding_m": (6e-4, 2.4e-3)} | BRISTLE_LOSS),
-    "pulley_stribeck": Policy(
-        shapes={"static_ratio": (1.4,), "stribeck_m_per_s": (0.008,), "presliding_m": (5e-5,)}
-        | BRISTLE_LOSS
+    "pulley_coulomb": _friction(presliding_m=(5e-5,)),
+    "pulley_capstan": _friction(presliding_m=(5e-5,)),
+    "pulley_presliding": _friction(presliding_m=(6e-4, 2.4e-3)),
+    "pulley_stribeck": _friction(
+        static_ratio=(1.4,), stribeck_m_per_s=(0.008,), presliding_m=(5e-5,)
     ),
     # Where it is tied on is told once it is there.
     "umbilical": Policy(
@@ -145,11 +150,11 @@ def candidates(
         elif name == "frames_dropped":
             found.append(_dropped(effect, times_s, frame_hz))
         else:
-            found.append(_plain(effect, POLICIES.get(name, Policy())))
+            found.append(_plain(effect, POLICIES.get(name, Policy()), len(times_s)))
     return tuple(found)
 
 
-def _plain(effect: Effect, policy: Policy) -> Candidate:
+def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
     magnitudes = [one for one in effect.parameters if one.magnitude]
     terms = []
     for one in magnitudes:
@@ -165,6 +170,14 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
               policy.shapes[one.name], logarithmic=one.low > 0.0, whole=one.name in WHOLE)
         for one in effect.parameters
         if one.name in policy.shapes
+    )  # fmt: skip
+    shapes += tuple(
+        Shape(_begins(one.name, cable, record, records), one.unit, one.default, one.low, one.high,
+              logarithmic=False, term=f"{magnitudes[0].name}@{cable}")
+        for one in effect.parameters
+        if one.name in policy.begins
+        for record in range(records)
+        for cable in CABLE_NUMBERS
     )  # fmt: skip
     exact = effect.acts.side in ("parameter", "cell", "camera", "clock", "drive")
     form = policy.form_share if policy.form_share is not None else NUMBER if exact else LAW
@@ -182,6 +195,11 @@ def _plain(effect: Effect, policy: Policy) -> Candidate:
         family=FAMILIES.get(effect.name, ""),
         grows=effect.name in GROWING,
     )
+
+
+def _begins(parameter: str, cable: int, record: int, records: int) -> str:
+    """What a number of the state is called in which a cable begins a run."""
+    return f"{parameter}@{cable}" + (f" in run {record + 1}" if records > 1 else "")
 
 
 def _lowest(parameter: Parameter, policy: Policy) -> float:
@@ -306,7 +324,13 @@ def library_values(
             "frame_hz": frame_hz,
         }
     effect = library()[name]
-    values: dict[str, float | tuple[float, ...]] = dict(setting.shapes)
+    values: dict[str, float | tuple[float, ...]] = {
+        key: one for key, one in setting.shapes.items() if "@" not in key
+    }
+    for begun in POLICIES.get(name, Policy()).begins:
+        values[begun] = tuple(
+            setting.shapes.get(_begins(begun, c, record, records), 0.0) for c in CABLE_NUMBERS
+        )
     for one in effect.parameters:
         if not one.magnitude:
             continue

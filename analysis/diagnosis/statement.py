@@ -11,7 +11,7 @@ from analysis.engine.cause import Cause
 from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.locate import Finding
-from analysis.engine.system import Candidate
+from analysis.engine.system import Candidate, Shape
 from analysis.engine.until import Until
 
 WHEN = {
@@ -158,6 +158,9 @@ def parameters_of(cause: Cause, candidate: Candidate) -> dict[str, Any]:
         shape = next((one for one in candidate.shapes if one.name == name), None)
         if shape is None:
             continue
+        if shape.term:
+            _begun(found, cause, shape)
+            continue
         sigma = cause.shape_sigmas.get(name, 0.0)
         found[name] = {
             "value": value,
@@ -165,6 +168,18 @@ def parameters_of(cause: Cause, candidate: Candidate) -> dict[str, Any]:
             "unit": shape.unit,
         }
     return found
+
+
+def _begun(found: dict[str, Any], cause: Cause, shape: Shape) -> None:
+    """Add what one cable began the one run with; that of several runs is no number of the rig's."""
+    name, _, place = shape.name.partition("@")
+    if not place.isdecimal() or shape.term not in cause.values:
+        return
+    entry = found.setdefault(name, {"unit": shape.unit, "cables": {}, "sigma_cables": {}})
+    entry["cables"][place] = cause.shapes[shape.name]
+    entry["sigma_cables"][place] = cause.shape_sigmas.get(shape.name, 0.0)
+    for key, each in (("value", "cables"), ("sigma", "sigma_cables")):
+        entry[key] = sum(entry[each].values()) / len(entry[each])
 
 
 def _fit(machine: RecordedMachine, proof: Confirmation | None) -> dict[str, Any]:

@@ -48,7 +48,7 @@ class Found(NamedTuple):
     """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
 
     Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
-    which share of the time anything can be foretold.
+    which share of the time anything can be foretold, and a cause that foretells some of it.
     """
 
     screened: Sequence[Scored]
@@ -57,6 +57,7 @@ class Found(NamedTuple):
     led: "Led | None" = None
     aside: tuple[str, ...] = ()
     foretold: float = 1.0
+    foretells: Followed | None = None
 
 
 class Led(NamedTuple):

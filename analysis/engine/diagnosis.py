@@ -31,10 +31,10 @@ REMAINS = 0.2
 never quite exact."""
 
 FORETOLD = (
-    "what was recorded after {until_s:.1f} s does not count: up to there parameters alone foretell "
-    "it to the noise, and after that nothing that was tried does. A motion that grows of itself, "
-    "as in a parametric resonance, does that, and so does something that only begins then; "
-    "another frequency of the drive tells which"
+    "what was recorded after {until_s:.1f} s does not count: up to there it can be foretold, and "
+    "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
+    "resonance, does that, cables that stick and slip do, and so does something that only begins "
+    "then; another frequency of the drive tells which"
 )
 
 

@@ -12,14 +12,17 @@ from analysis.engine.all_samples import (
 from analysis.engine.cycles import valley
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.graduated import graduated
 from analysis.engine.kin import (
     kin_of,
     part_of_the_way,
 )
+from analysis.engine.leader import EFFORT
 from analysis.engine.more_leader import FAR_BEHIND, MoreLeader
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import FAR, follow_ring
+from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import Progress
 
 EARLY = 0.03
@@ -33,6 +36,13 @@ made them stand for what it is not: the next guesses are led, too."""
 GUESSES = 2
 """So many of them, of other kinds, until one comes there with less; and until one comes farther,
 where the first came no farther than parameters alone."""
+
+TOLD, AS_GOOD = 2, 4.0
+"""So many of what lines tell are led on from the first stretch, where they leave no more than so
+many times what the best leaves of it."""
+
+SOME = 0.25
+"""Of the time: what explains as much, when lines were asked before, is looked at in that alone."""
 
 
 class FollowedSearch(MoreLeader):
@@ -84,7 +94,10 @@ class FollowedSearch(MoreLeader):
         seen
             They are likely by lines as well: what explains but a stretch is looked beside.
         """
-        self.lead_first(hypotheses)
+        if seen and not self._near:
+            self._lead_told(hypotheses)
+        else:
+            self.lead_first(hypotheses)
         if not self._led or self.ended:
             return
         if not self._near:
@@ -184,12 +197,37 @@ class FollowedSearch(MoreLeader):
             self._lead_guess(one)
         self._is_enough()
 
+    def _lead_told(self, guesses: Sequence[Fitted]) -> None:
+        """Lead what lines tell: what leaves least of the first stretch, as long as none arrives."""
+        samples = Samples(self._system, everything=True)
+        begun = []
+        for one in self._fresh(guesses):
+            if not any(one.state.is_about(at) for at in self._begun):
+                self._begun.append(one.state)
+                begun.append(graduated(samples, one))
+        self._effort += samples.effort
+        begun.sort(key=lambda one: one.left)
+        for start in begun[:TOLD]:
+            if (self._led and self._best.to_end) or start.left > AS_GOOD * begun[0].left:
+                break
+            assert start.state is not None
+            self._lead(start.nuisance, start.state, near=False)
+        # What it takes from here on is spent on what is likely.
+        self._most = max(self._most, self._effort + EFFORT)
+
     def _lead_guess(self, guess: Fitted) -> None:
         """Lead what straight lines promise, or, near the phase, so much of it as leaves least."""
         start = Followed(guess.point.nuisance, guess.state)
         if self._near:
             start = part_of_the_way(self._samples, self._nothing, start)
         self._lead(start.nuisance, start.state or guess.state, near=self._near)
+
+    @property
+    def foretells(self) -> Followed | None:
+        """What foretells a part of the time to the noise, and parameters are hardly bent for it."""
+        best = self._best
+        told = best.state is not None and SOME <= best.share < 1.0 and best.strain < FAR
+        return best if told and not self.arrived else None
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""

@@ -90,7 +90,7 @@ def part_log_prior(candidate: Candidate, part: Part) -> float:
         else:
             total -= log(2.0 * of * comb(of, on))
     free = 0 if candidate.fixed else part.free
-    shapes = sum(not shape.whole for shape in candidate.shapes)
+    shapes = sum(not shape.whole for shape in candidate.shapes_of(part.terms))
     tried = 1
     for shape in candidate.shapes:
         tried *= len(shape.grid) if shape.whole and shape.grid else 1

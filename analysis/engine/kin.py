@@ -211,7 +211,7 @@ def _alike(samples: Samples, law: Followed, known: str, other: str) -> State:
     own: dict[str, float] = {}
     shared = {one.name for one in law.state.candidates[known].shapes}
     for shape in law.state.candidates[other].shapes:
-        if shape.name not in shared and not shape.whole:
+        if shape.name not in shared and not (shape.whole or shape.term):
             values = (shape.default, shape.low, shape.high)
             tried = [instead(law.state, known, other, {**own, shape.name: one}) for one in values]
             own[shape.name] = values[_least(samples, law.nuisance, tried)]

@@ -14,6 +14,7 @@ from analysis.engine.faint_search import nuisances_of, one_more, promised_by
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import lead_from, lead_instead, part_of_the_way
+from analysis.engine.ring_fit import FAR
 from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
@@ -59,7 +60,7 @@ class MoreLeader(RivalLeader):
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
         for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
-            if best.to_end and not self._would_tell(found, scored):
+            if best.to_end and best.strain < FAR and not self._would_tell(found, scored):
                 continue
             (added,) = set(scored.hypothesis.names) - set(best.names)
             promised.setdefault(family[added], []).append(scored)
@@ -113,7 +114,8 @@ class MoreLeader(RivalLeader):
         """Whether one cause more, as promised, would count beside the error of form that is left.
 
         What explains little of what a law of friction leaves is lost in how wrong that law may be,
-        and to lead it is in vain; what explains all of it shows that the law was right.
+        and to lead it is in vain; what explains all of it shows that the law was right. Where
+        parameters are bent far, they make up for some of it, and this is not asked.
         """
         best, known = self._best, self._refiner.candidates
         explains = promised_by(found, self._refiner, scored)

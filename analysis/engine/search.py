@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from analysis.engine.all_samples import noise_of
-from analysis.engine.by_ring import Found, Led, by_ring
+from analysis.engine.by_ring import Found, Led, Start, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
@@ -29,6 +29,9 @@ UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
 is seen without it."""
 
+AS_LIKELY, MOST_AS_LIKELY = 0.01, 3
+"""Of the laws of what is likeliest by lines so many are led that are this share of what it explains
+behind it."""
 
 REMAINS_ALONE = 0.1
 """Where nothing is on, there is no law that could be a little off: what is so much more than noise
@@ -81,7 +84,12 @@ class Search:
 
 
 def search(
-    system: System, tell: Tell | None = None, *, anew: bool = False, most_causes: int = 3
+    system: System,
+    tell: Tell | None = None,
+    *,
+    anew: bool = False,
+    most_causes: int = 3,
+    start: Start | None = None,
 ) -> Search:
     """Look for what explains the recording.
 
@@ -96,6 +104,8 @@ def search(
         which one thing changes what another does, and that is quickly simulated.
     most_causes
         Of a hypothesis.
+    start
+        From where what rings is led; None: from the likeliest parameters.
     """
     lens, data, calibrated = look(system, tell)
     refiner = Refiner(system, lens, data, calibrated, anew=anew)
@@ -104,11 +114,20 @@ def search(
     found = Found((), (), faint=False)
     if rings(system):
         several = len(records_of(system)) >= SEVERAL
-        found = (by_pilot if several else by_ring)(refiner, most_causes, tell)
+        if several:
+            found = by_pilot(refiner, most_causes, tell)
+        else:
+            found = by_ring(refiner, most_causes, tell, start)
     if not found.fitted and found.foretold < 1.0 and not isinstance(system, Until):
         return search(Until(system, found.foretold), tell, anew=anew, most_causes=most_causes)
     if not found.fitted:
         found = _by_lines(refiner, null, most_causes, tell, found.led)
+    if found.foretells is not None and not isinstance(system, Until):
+        best = found.foretells
+        start = Start(best.nuisance, (best,))
+        return search(
+            Until(system, best.share), tell, anew=anew, most_causes=most_causes, start=start
+        )
     if not rings(system):
         refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
         found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))
@@ -141,11 +160,14 @@ def _by_lines(
     singles = finder.singles(null)
     alone = [one for one in finder.ranked() if one.hypothesis.parts]
     if led is not None:
-        led.search.follow(
-            _to_follow(refiner, null, led.single, alone), [*alone, *led.single], seen=True
-        )
-        if not led.search.arrived or led.search.is_poor:
+        told = [*_to_follow(refiner, null, led.single, alone), *_as_likely(refiner, null, alone)]
+        led.search.follow(told, [*alone, *led.single], seen=True)
+        poor = not led.search.arrived or led.search.is_poor
+        if poor and led.search.foretells is None:
             led.search.follow(_both(refiner, null, led.single, alone), [], seen=True)
+        if led.search.foretells is not None:
+            ranked = finder.ranked()
+            return Found(singles, ranked, faint=False, foretells=led.search.foretells)
     if led is None or not led.search.arrived:
         finder.sets(most_causes)
     ranked = finder.ranked()
@@ -193,6 +215,25 @@ def _to_follow(
     for one in known:
         tried.setdefault(one.hypothesis.names, one)
     return list(tried.values())
+
+
+def _as_likely(refiner: Refiner, null: Fitted, ranked: Sequence[Fitted]) -> list[Fitted]:
+    """Laws of what is likeliest that lines do not tell from it: one for each, the likeliest first.
+
+    A law's error of form is a share of what it explains, so much are the others not behind.
+    """
+    if not ranked:
+        return []
+    first = ranked[0]
+    behind = AS_LIKELY * (first.log_score - null.log_score)
+    kin: dict[tuple[str, ...], Fitted] = {}
+    for one in ranked:
+        if (
+            _kind(refiner, one) == _kind(refiner, first)
+            and one.log_score > first.log_score - behind
+        ):
+            kin.setdefault(one.hypothesis.names, one)
+    return list(kin.values())[:MOST_AS_LIKELY]
 
 
 def _both(

@@ -68,7 +68,7 @@ class State:
                 step = 0.0 if candidate.fixed else MAGNITUDE_STEP * (abs(value) + abs(size))
                 numbers.append(Number(name, group, None, low, high, step))
                 values.append(size if candidate.fixed else float(np.clip(value, low, high)))
-            for shape in candidate.shapes:
+            for shape in candidate.shapes_of(part.terms):
                 if not shape.whole:
                     at = part.shapes.get(shape.name, shape.default)
                     numbers.append(
@@ -249,7 +249,7 @@ class State:
         """Numbers at an edge of their range that is not zero, with their candidate."""
         found = []
         for number, value in zip(self.numbers, self.values, strict=True):
-            if not number.step:
+            if not number.step or (number.shape is not None and number.shape.term):
                 continue
             reach = 1e-3 * (number.high - number.low)
             low = value <= number.low + reach and number.low != 0.0

@@ -221,6 +221,11 @@ def check_candidates(candidates: Sequence[Candidate]) -> None:
             _check_term(term, f"{where}, term {term.name!r}")
         for shape in one.shapes:
             _check_shape(shape, f"{where}, shape {shape.name!r}")
+            if shape.term and shape.term not in names:
+                raise DataError(
+                    f"shape {shape.name!r} belongs to {shape.term!r}", allowed=_listed(names),
+                    where=where, remedy="one of its own terms, or none",
+                )  # fmt: skip
 
 
 def _check_term(term: Term, where: str) -> None:

@@ -1,6 +1,6 @@
 """What the engine is given: recorded channels, a simulator, and what it may have left out."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, runtime_checkable
 
@@ -169,6 +169,9 @@ class Shape:
         Never fitted, only tried: at the values of the grid and,
     finest
         about the best of them, at ever closer ones down to this distance. 0: no closer.
+    term
+        The magnitude it belongs to, such as the state in which one cable of many begins: it counts
+        where that is on, and may well come to the end of its range. "": it belongs to all.
     """
 
     name: str
@@ -180,6 +183,7 @@ class Shape:
     logarithmic: bool = True
     whole: bool = False
     finest: float = 0.0
+    term: str = ""
 
 
 @dataclass(frozen=True)
@@ -233,6 +237,10 @@ class Candidate:
     fixed: bool = False
     family: str = ""
     grows: bool = False
+
+    def shapes_of(self, terms: Collection[str]) -> tuple[Shape, ...]:
+        """Those that count where these terms are on."""
+        return tuple(one for one in self.shapes if not one.term or one.term in terms)
 
     def variants(self) -> tuple[dict[str, float], ...]:
         """Every combination of the shapes' screening values."""

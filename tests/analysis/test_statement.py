@@ -1,10 +1,12 @@
 """What the statement says of where a cause acts."""
 
+from dataclasses import replace
+
 import pytest
 
 from analysis.diagnosis.statement import cables_of, not_ruled_out, parameters_of
 from analysis.engine.cause import Cause
-from analysis.engine.system import Candidate, Term
+from analysis.engine.system import Candidate, Shape, Term
 
 
 def cause(values: dict[str, float], sigma: float) -> Cause:
@@ -37,6 +39,26 @@ def test_a_size_is_the_mean_over_the_cables_it_acts_on_and_told_for_each_that_wa
     assert told["cables"] == {"2": 0.3, "7": 0.2, "1": 0.01}
     (open_size,) = parameters_of(cause(values, 0.4), candidate).values()
     assert open_size["value"] == pytest.approx(0.25)
+
+
+def test_what_each_cable_began_the_run_with_is_told_for_those_that_are_on() -> None:
+    terms = tuple(Term(f"coulomb_n@{k}", "coulomb_n", "N", f"{k}", 0.0, 5.0, 0.1) for k in (2, 7))
+    shapes = tuple(
+        Shape(f"bent_at_rest@{k}", "1", 0.0, -1.0, 1.0, term=f"coulomb_n@{k}") for k in (2, 7)
+    )
+    candidate = Candidate("pulley_coulomb", "friction", "plant", terms, shapes)
+    on = replace(
+        cause({"coulomb_n@2": 0.3}, 0.02),
+        shapes={"bent_at_rest@2": -0.4, "bent_at_rest@7": 0.0},
+        shape_sigmas={"bent_at_rest@2": 0.1},
+    )
+    told = parameters_of(on, candidate)
+    assert told["bent_at_rest"] == {
+        "value": -0.4, "sigma": 0.1, "unit": "1", "cables": {"2": -0.4}, "sigma_cables": {"2": 0.1},
+    }  # fmt: skip
+    several = replace(candidate, shapes=(replace(shapes[0], name="bent_at_rest@2 in run 1"),))
+    in_runs = replace(on, shapes={"bent_at_rest@2 in run 1": -0.4})
+    assert set(parameters_of(in_runs, several)) == {"coulomb_n"}
 
 
 def test_where_nothing_is_named_what_is_likely_all_the_same_is_said() -> None:

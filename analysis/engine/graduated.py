@@ -1,0 +1,80 @@
+"""What lines tell, led to the ring's phase: held about that, and let go of by and by.
+
+As a motion begins, what sticks is stuck. How strong it is, how soon it slips and how far it was
+bent can stand for each other there, and over a short stretch free numbers fit in many valleys, of
+which one goes on. Over a longer stretch few valleys are deep, but from afar none is seen. Lines
+have told the numbers to some accuracy: as if that were known far better, samples are fitted over a
+longer stretch, and again with ever less of that (graduated optimization: Blake and Zisserman 1987).
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
+from analysis.engine.known import Known
+from analysis.engine.ring_samples import Samples
+from analysis.engine.state import SHAPE_WIDTH, Number
+from analysis.engine.way import WINDOWS, Way
+
+STRETCH = WINDOWS[2]
+"""Share of the time over which samples are fitted."""
+
+HELD = (1000.0, 100.0, 10.0, 1.0)
+"""So many times as much as is known of numbers is held to be known, one after the other;"""
+
+STEPS = 8
+"""each for so many steps at most."""
+
+STRENGTH, BEGINS = 0.05, 0.06
+"""How well lines tell a magnitude, as a share of it, and what a place of it began with, as a share
+of half its range."""
+
+
+def graduated(samples: Samples, guess: Fitted) -> Followed:
+    """Where samples of the first stretch lead from what lines tell.
+
+    Parameters
+    ----------
+    samples
+        By which it is led.
+    guess
+        Fitted to lines.
+
+    Returns
+    -------
+    Followed
+        From where the ring is to be followed, and what is left there up to `STRETCH`.
+    """
+    at, known = Followed(guess.point.nuisance, guess.state), as_told(guess)
+    for times in HELD:
+        way = Way(samples, at, None, known._replace(information=times * known.information))
+        for _ in range(STEPS):
+            if not way.step(STRETCH, lost=np.inf):
+                break
+        at = replace(way.at, share=STRETCH, left=way.left(STRETCH))
+    return at
+
+
+def as_told(guess: Fitted) -> Known:
+    """What lines tell of a hypothesis; of nuisances, what was known before.
+
+    Parameters
+    ----------
+    guess
+        Fitted to lines.
+    """
+    state, count = guess.state, len(guess.point.nuisance)
+    sigmas = [_told(state.numbers[i], float(state.values[i])) for i in state.free]
+    at = np.concatenate([np.zeros(count), state.values[list(state.free)]])
+    information = np.concatenate([np.ones(count), np.array(sigmas) ** -2.0])
+    return Known(at, np.diag(information))
+
+
+def _told(number: Number, value: float) -> float:
+    """Standard deviation of a number, as lines tell it."""
+    if number.shape is None:
+        return max(STRENGTH * abs(value), number.step)
+    half = 0.5 * (number.high - number.low)
+    return BEGINS * half if number.shape.term else 2.0 * SHAPE_WIDTH * half

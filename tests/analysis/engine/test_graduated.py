@@ -1,0 +1,112 @@
+"""What sticks begins bent: that is a place's own number, and lines lead to the ring's phase."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
+from analysis.engine.graduated import STRETCH, as_told, graduated
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.look import look
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.state import State
+from analysis.engine.system import Array, Prediction
+
+T_S = np.arange(0.0, 20.0, 0.02)
+NOISE, TONE_HZ, SIGMA = 0.002, 5.0, 0.01
+START_S = 1.0
+STUCK = Candidate(
+    "stuck", "a mass that sticks", "plant",
+    tuple(Term(f"force@{k}", "force", "N", f"{k}", 0.0, 5.0, 0.3) for k in (1, 2)),
+    tuple(Shape(f"bent@{k}", "1", 0.0, -1.0, 1.0, logarithmic=False, term=f"force@{k}")
+          for k in (1, 2)),
+)  # fmt: skip
+
+
+class Sticking:
+    """A ring whose tone, size and mean go with what sticks, and with how far that was bent."""
+
+    name = "sticking"
+    nuisances: Sequence[Nuisance] = (Nuisance("tone", SIGMA, "1"),)
+    candidates: Sequence[Candidate] = (STUCK,)
+
+    def __init__(self, true: Point) -> None:
+        value = self._one(true)
+        value = value + NOISE * np.random.default_rng(3).standard_normal(value.shape)
+        segments = (Segment(0.0, START_S, None, 20.0, name="rest"), Segment(1.0, 20.0, None, 20.0))
+        self.bundles = (
+            Bundle(("y",), ("V",), T_S, value, np.eye(1) * NOISE**2, segments, tones_hz=(TONE_HZ,)),
+        )
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [reduce([self._one(point)]) for point in points]
+
+    def tones_hz(self, point: Point) -> Array:
+        """See `Ringing`."""
+        return np.array([TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]))])
+
+    def _one(self, point: Point) -> Array:
+        on = point.effects.get("stuck")
+        force = on.values.get("force@1", 0.0) if on else 0.0
+        bent = on.shapes.get("bent@1", 0.0) if on else 0.0
+        since = np.maximum(T_S - START_S, 0.0)
+        hertz = TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]) + 0.3 * force * bent)
+        shift = force * (1.0 - bent) * (T_S > START_S)
+        size = 1.0 + 0.5 * force
+        return np.asarray((size * np.sin(2.0 * np.pi * hertz * since) + shift)[:, None])
+
+
+def state_of(force: float, bent: float) -> State:
+    part = Part(("force@1",), shapes={"bent@1": bent, "bent@2": 0.0})
+    hypothesis = Hypothesis({"stuck": part})
+    return State.at(hypothesis, {("stuck", "force@1"): force}, {"stuck": STUCK})
+
+
+def test_what_a_place_begins_with_is_free_where_that_place_is_on() -> None:
+    one = state_of(0.5, 0.3)
+    assert [n.shape.name for n in one.numbers if n.shape is not None] == ["bent@1"]
+    both = State.at(
+        Hypothesis({"stuck": Part(("force@1", "force@2"), shapes={"bent@1": 0.3})}),
+        {("stuck", "force@1"): 0.5, ("stuck", "force@2"): 0.4},
+        {"stuck": STUCK},
+    )
+    assert [n.shape.name for n in both.numbers if n.shape is not None] == ["bent@1", "bent@2"]
+    known = {"stuck": STUCK}
+    assert one.hypothesis.log_prior(known) > both.hypothesis.log_prior(known)
+
+
+def test_it_may_come_to_the_end_of_its_range() -> None:
+    assert state_of(0.5, 1.0).at_edge() == ()
+    assert state_of(5.0, 1.0).at_edge() == (("stuck", "force@1"),)
+
+
+def test_numbers_that_lines_tell_are_led_to_the_rings_phase() -> None:
+    true = state_of(0.6, 0.5)
+    system = Sticking(true.point(np.array([1.5])))
+    lens, data, calibrated = look(system)
+    refiner = Refiner(system, lens, data, calibrated)
+    guess = refiner.standing(state_of(0.63, 0.47), np.zeros(1))
+    samples = Samples(system, everything=True)
+    start = graduated(samples, guess)
+    assert start.left < 2.0
+    assert start.share == STRETCH
+    assert start.state is not None
+    found = follow_ring(system, start.nuisance, start.state, everything=True)
+    assert found.to_end
+    assert found.left == pytest.approx(1.0, abs=0.2)
+    assert found.state is not None
+    assert found.state.values == pytest.approx(true.values, abs=0.01)
+
+
+def test_what_lines_tell_is_known_to_a_share_and_nuisances_as_before() -> None:
+    system = Sticking(state_of(0.6, 0.5).point(np.zeros(1)))
+    lens, data, calibrated = look(system)
+    guess = Refiner(system, lens, data, calibrated).standing(state_of(0.8, 0.4), np.ones(1))
+    known = as_told(guess)
+    assert known.at == pytest.approx([0.0, 0.8, 0.4])
+    assert np.sqrt(1.0 / np.diag(known.information)) == pytest.approx([1.0, 0.04, 0.06])
