@@ -1,5 +1,6 @@
 """What many tasks of a fit ask of one drive, kept: its table, and where it begins."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -23,11 +24,12 @@ def followed(motion: Motion, time_s: float, within_s: float) -> tuple[Array, Arr
     return pose, rate
 
 
-class _ByValue:
+class _ByValue(ABC):
     """A key whose machine and arrays are told apart by value, as a cache asks."""
 
+    @abstractmethod
     def _value(self) -> tuple[object, ...]:
-        raise NotImplementedError
+        """What tells it from others."""
 
     @cached_property
     def _told(self) -> tuple[object, ...]:

@@ -22,7 +22,6 @@ from analysis.engine.more_leader import FAR_BEHIND, MoreLeader
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAR, follow_ring
-from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import Progress
 
 EARLY = 0.03
@@ -199,13 +198,12 @@ class FollowedSearch(MoreLeader):
 
     def _lead_told(self, guesses: Sequence[Fitted]) -> None:
         """Lead what lines tell: what leaves least of the first stretch, as long as none arrives."""
-        samples = Samples(self._system, everything=True)
-        begun = []
+        begun, before = [], self._samples.effort
         for one in self._fresh(guesses):
             if not any(one.state.is_about(at) for at in self._begun):
                 self._begun.append(one.state)
-                begun.append(graduated(samples, one))
-        self._effort += samples.effort
+                begun.append(graduated(self._samples, one))
+        self._effort += self._samples.effort - before
         begun.sort(key=lambda one: one.left)
         for start in begun[:TOLD]:
             if (self._led and self._best.to_end) or start.left > AS_GOOD * begun[0].left:
@@ -214,6 +212,7 @@ class FollowedSearch(MoreLeader):
             self._lead(start.nuisance, start.state, near=False)
         # What it takes from here on is spent on what is likely.
         self._most = max(self._most, self._effort + EFFORT)
+        self._is_enough()
 
     def _lead_guess(self, guess: Fitted) -> None:
         """Lead what straight lines promise, or, near the phase, so much of it as leaves least."""

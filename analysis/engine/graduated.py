@@ -15,7 +15,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
-from analysis.engine.state import SHAPE_WIDTH, Number
+from analysis.engine.state import Number
 from analysis.engine.way import WINDOWS, Way
 
 STRETCH = WINDOWS[2]
@@ -76,5 +76,4 @@ def _told(number: Number, value: float) -> float:
     """Standard deviation of a number, as lines tell it."""
     if number.shape is None:
         return max(STRENGTH * abs(value), number.step)
-    half = 0.5 * (number.high - number.low)
-    return BEGINS * half if number.shape.term else 2.0 * SHAPE_WIDTH * half
+    return BEGINS * 0.5 * (number.high - number.low) if number.shape.term else number.width

@@ -220,10 +220,7 @@ def _among_kin(
         best = scores[places].max()
         if np.isfinite(best) and len(places) > 1:
             shapes = [
-                sum(
-                    sum(not shape.term for shape in candidates[name].shapes)
-                    for name in fitted[i].hypothesis.names
-                )
+                sum(len(candidates[name].shapes_of(())) for name in fitted[i].hypothesis.names)
                 for i in places
             ]
             more = np.array(shapes) - min(shapes)

@@ -35,6 +35,11 @@ class Number:
     high: float
     step: float
 
+    @property
+    def width(self) -> float:
+        """Prior of a shape about its default, as a standard deviation."""
+        return SHAPE_WIDTH * (self.high - self.low)
+
 
 @dataclass(frozen=True)
 class State:
@@ -230,11 +235,11 @@ class State:
             number = self.numbers[i]
             if number.shape is None:
                 continue
-            width = SHAPE_WIDTH * (number.high - number.low)
             row = np.zeros(len(self.free))
-            row[k] = 1.0 / width
+            row[k] = 1.0 / number.width
             rows.append(row)
-            residuals.append((_in(number.shape, number.shape.default) - self.values[i]) / width)
+            off = _in(number.shape, number.shape.default) - self.values[i]
+            residuals.append(off / number.width)
         return np.array(residuals), np.array(rows).reshape(len(rows), len(self.free))
 
     def term_values(self) -> dict[tuple[str, str], float]:

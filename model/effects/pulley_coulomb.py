@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent, steepest, stiffest
 from model.library.effect import Acts, Effect, Parameter, State
 
 
@@ -22,16 +22,6 @@ def pull(
 def rates(presliding_m: Any, bent_at_rest: Any, bristle: Any, axial_velocity: Any) -> Any:
     """Z follows sgn v within x_s."""
     return bent(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
-
-
-def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
-    """F_c t_b / x_s, of a bristle that sticks."""
-    return coulomb_n * bristle_loss_s / presliding_m
-
-
-def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:
-    """F_c / x_s, of a bristle that sticks."""
-    return coulomb_n / presliding_m
 
 
 EFFECT = Effect(

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent, steepest, stiffest
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import gaussian
 
@@ -35,16 +35,6 @@ def pull(
         static_ratio, stribeck_m_per_s, presliding_m, bent_at_rest, bristle, axial_velocity
     )
     return coulomb_n * (bristle + bristle_loss_s * rate)
-
-
-def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
-    """F_c t_b / x_s, of a bristle that sticks."""
-    return coulomb_n * bristle_loss_s / presliding_m
-
-
-def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:
-    """F_c / x_s, of a bristle that sticks."""
-    return coulomb_n / presliding_m
 
 
 EFFECT = Effect(

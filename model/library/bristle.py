@@ -44,3 +44,13 @@ def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
     caught = CATCHES_S * size
     way = np.sqrt(presliding_m * presliding_m + caught * caught)
     return (slip - size * bristle / level) / way
+
+
+def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
+    """F_c t_b / x_s, of a bristle that sticks: see `Effect.steepest`."""
+    return coulomb_n * bristle_loss_s / presliding_m
+
+
+def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:
+    """F_c / x_s, of a bristle that sticks: see `Effect.stiffest`."""
+    return coulomb_n / presliding_m
