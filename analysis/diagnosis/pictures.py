@@ -94,7 +94,8 @@ class Channel:
         Of the cable, simulated with the causes in, shape (n,); empty for a pose.
     harmonics_before, harmonics_after
         Residual at each harmonic of the drive from the mean on, in units of its noise, shape (h,);
-        empty where nothing repeats.
+        empty where nothing repeats. Of what is drawn, where the ring's phase was found; where not,
+        with the ring left out, as it was judged.
     """
 
     record: str

@@ -38,12 +38,17 @@ def picture(machine: "RecordedMachine", diagnosis: "Diagnosis") -> Pictures:
         before = search.null if named else after
         points = (before.point, after.point)
         left = (before.problem.residual, after.problem.residual)
+    places = range(len(machine.recordings))
+    seen = [[_seen(machine, point, place) for place in places] for point in points]
+    if search is not None and search.faint:
+        # What was led to the phase of the ring is judged with it.
+        before_it, after_it = ([one for shown, _ in stage for one in shown] for stage in seen)
+        left = (search.data - search.lens(before_it), search.data - search.lens(after_it))
     lines = [_harmonics(machine, problem.labels, one) for one in left]
     records, channels = [], []
     first = 0
     for place, recording in enumerate(machine.recordings):
-        shown, plain = _seen(machine, points[0], place)
-        better, cables = _seen(machine, points[1], place)
+        (shown, plain), (better, cables) = (stage[place] for stage in seen)
         excitation = recording.excitation
         records.append(
             Record(

@@ -10,11 +10,12 @@ from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than, noise
 from analysis.engine.beginnings import begun_otherwise
 from analysis.engine.cycles import valley
 from analysis.engine.faint import faint
-from analysis.engine.faint_search import faint_search, fitted_there, one_more
+from analysis.engine.faint_search import faint_search, guessed, one_more
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
@@ -64,7 +65,7 @@ class Led(NamedTuple):
     """What was led to the ring's phase so far, and what the ring promised alone."""
 
     search: FollowedSearch
-    single: Sequence[Fitted]
+    single: Sequence[Guess]
 
 
 class Start(NamedTuple):
@@ -132,11 +133,11 @@ def by_ring(
                 screened, faintly = faint_search(about, refiner, refiner.candidates)
         if not _promising(faintly):
             return Found(screened, faintly, faint=True)
-        single = [one for one in faintly if len(one.hypothesis.parts) == 1]
+        single = [Guess.of(one) for one in faintly if len(one.hypothesis.parts) == 1]
     else:
         promised = one_more(about, refiner)
         screened, faintly = promised, []
-        single = [fitted_there(about, refiner, one) for one in promised]
+        single = [guessed(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)
@@ -205,7 +206,7 @@ def _standing(system: System, nuisance: Array) -> Followed:
     return replace(at, misfit=float(found @ found), left=float(np.mean(found**2)))
 
 
-def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
+def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Guess]:
     """The parameters that were bent most where alone they went far, free of what is known of them.
 
     Held to that, they may have taken a wrong turn that only they can be led past, all of a kind.
@@ -234,15 +235,15 @@ def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Fitted]:
     hypothesis = Hypothesis({name: Part(tuple(one.term or "" for one, _ in numbers))})
     state, start = State.at(hypothesis, values, refiner.candidates), at.copy()
     start[of[name]] = 0.0
-    return [refiner.standing(state, start)]
+    return [Guess(state, start)]
 
 
-def _of_one_kind(single: Sequence[Fitted]) -> list[Fitted]:
+def _of_one_kind(single: Sequence[Guess]) -> list[Guess]:
     """The likeliest single cause, in other places too, where these are promised."""
     return [one for one in single if one.hypothesis.names == single[0].hypothesis.names]
 
 
-def _abreast(single: Sequence[Fitted]) -> list[Fitted]:
+def _abreast(single: Sequence[Guess]) -> list[Guess]:
     """The likeliest of what the ring tells in straight lines; rivals among them."""
     least = max((one.log_score for one in single), default=0.0) - ABREAST
     return [one for one in single if one.log_score > least][:MOST_ABREAST]

@@ -8,6 +8,7 @@ import numpy as np
 from analysis.engine.faint import Faint
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen, grouped
@@ -65,7 +66,7 @@ def faint_search(
         for one in singles[SINGLES:]
         if any(chosen[name].family in kin for name in one.hypothesis.names)
     ]
-    fitted = [fitted_there(found, refiner, one) for one in (null, *kept, *best)]
+    fitted = [_fitted_there(found, refiner, one) for one in (null, *kept, *best)]
     return singles, sorted(fitted, key=lambda one: -one.log_score)
 
 
@@ -199,8 +200,14 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
     )
 
 
-def fitted_there(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
+def guessed(found: Faint, refiner: Refiner, scored: Scored) -> Guess:
+    """A hypothesis where straight lines about the followed ring say, to be led from there."""
+    state = State.of(scored, refiner.candidates)
+    return Guess(state, nuisances_of(found, scored), scored.log_score)
+
+
+def _fitted_there(found: Faint, refiner: Refiner, scored: Scored) -> Fitted:
     """A hypothesis as others are, with the score that the ring gives it."""
-    nuisance, state = nuisances_of(found, scored), State.of(scored, refiner.candidates)
-    fitted = refiner.standing(state, nuisance)
+    there = guessed(found, refiner, scored)
+    fitted = refiner.standing(there.state, there.nuisance)
     return replace(fitted, log_score=scored.log_score, left=found.followed.left)

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
@@ -10,14 +12,14 @@ from analysis.engine.all_samples import (
     tells_more,
 )
 from analysis.engine.cycles import valley
-from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.graduated import graduated
+from analysis.engine.guess import Guess
 from analysis.engine.kin import (
     kin_of,
     part_of_the_way,
 )
-from analysis.engine.leader import EFFORT
+from analysis.engine.leader import EFFORT, POOR
 from analysis.engine.more_leader import FAR_BEHIND, MoreLeader
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
@@ -74,8 +76,8 @@ class FollowedSearch(MoreLeader):
 
     def follow(
         self,
-        hypotheses: Sequence[Fitted],
-        others: Sequence[Fitted],
+        hypotheses: Sequence[Guess],
+        others: Sequence[Guess],
         *,
         guessed: bool = False,
         seen: bool = False,
@@ -116,7 +118,7 @@ class FollowedSearch(MoreLeader):
             self._lead_alike(others)
         self._lead_beside()
 
-    def _lead_next(self, others: Sequence[Fitted], until: Callable[[Followed], bool]) -> None:
+    def _lead_next(self, others: Sequence[Guess], until: Callable[[Followed], bool]) -> None:
         """The next guesses, of other kinds than what was led, until the best is of use.
 
         Parameters
@@ -133,7 +135,7 @@ class FollowedSearch(MoreLeader):
             kind = self._kinds(one.hypothesis.names)
             if not kind & kinds:
                 kinds |= kind
-                self._lead(one.point.nuisance, one.state, near=False)
+                self._lead(one.nuisance, one.state, near=False)
 
     def _is_farther(self, led: Followed) -> bool:
         return led.to_end or led.share >= self._nothing.share + EARLY
@@ -182,7 +184,7 @@ class FollowedSearch(MoreLeader):
             self.ended = self._enough(best)
         return self.ended
 
-    def lead_first(self, hypotheses: Sequence[Fitted]) -> None:
+    def lead_first(self, hypotheses: Sequence[Guess]) -> None:
         """Lead hypotheses, and look no farther.
 
         Parameters
@@ -196,27 +198,44 @@ class FollowedSearch(MoreLeader):
             self._lead_guess(one)
         self._is_enough()
 
-    def _lead_told(self, guesses: Sequence[Fitted]) -> None:
-        """Lead what lines tell: what leaves least of the first stretch, as long as none arrives."""
-        begun, before = [], self._samples.effort
+    def _lead_told(self, guesses: Sequence[Guess]) -> None:
+        """Lead what lines tell: what leaves least of the first stretch, as long as none arrives.
+
+        What leaves no more of that than noise is led at once: where it arrives, its kin and rivals
+        are led from there.
+        """
+        begun: list[Followed] = []
+        least, before = np.inf, self._samples.effort
         for one in self._fresh(guesses):
-            if not any(one.state.is_about(at) for at in self._begun):
-                self._begun.append(one.state)
-                begun.append(graduated(self._samples, one))
+            if any(one.state.is_about(at) for at in self._begun):
+                continue
+            self._begun.append(one.state)
+            start = graduated(self._samples, one, most=AS_GOOD * least)
+            least = min(least, start.left)
+            if start.left > noise_of(self._system) + POOR:
+                begun.append(start)
+                continue
+            self._lead_on(start)
+            if self.arrived and not self.is_poor:
+                break
         self._effort += self._samples.effort - before
         begun.sort(key=lambda one: one.left)
         for start in begun[:TOLD]:
-            if (self._led and self._best.to_end) or start.left > AS_GOOD * begun[0].left:
+            if (self._led and self._best.to_end) or start.left > AS_GOOD * least:
                 break
-            assert start.state is not None
-            self._lead(start.nuisance, start.state, near=False)
+            self._lead_on(start)
         # What it takes from here on is spent on what is likely.
         self._most = max(self._most, self._effort + EFFORT)
         self._is_enough()
 
-    def _lead_guess(self, guess: Fitted) -> None:
+    def _lead_on(self, start: Followed) -> None:
+        """Lead on what was led over the first stretch."""
+        assert start.state is not None
+        self._lead(start.nuisance, start.state, near=False)
+
+    def _lead_guess(self, guess: Guess) -> None:
         """Lead what straight lines promise, or, near the phase, so much of it as leaves least."""
-        start = Followed(guess.point.nuisance, guess.state)
+        start = Followed(guess.nuisance, guess.state)
         if self._near:
             start = part_of_the_way(self._samples, self._nothing, start)
         self._lead(start.nuisance, start.state or guess.state, near=self._near)

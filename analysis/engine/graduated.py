@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import Number
@@ -27,12 +27,15 @@ HELD = (1000.0, 100.0, 10.0, 1.0)
 STEPS = 8
 """each for so many steps at most."""
 
+FAR_OFF = 100.0, 5.0
+"""From here on, what is left has not been seen to fall to less than a fifth."""
+
 STRENGTH, BEGINS = 0.05, 0.06
 """How well lines tell a magnitude, as a share of it, and what a place of it began with, as a share
 of half its range."""
 
 
-def graduated(samples: Samples, guess: Fitted) -> Followed:
+def graduated(samples: Samples, guess: Guess, most: float = np.inf) -> Followed:
     """Where samples of the first stretch lead from what lines tell.
 
     Parameters
@@ -41,23 +44,27 @@ def graduated(samples: Samples, guess: Fitted) -> Followed:
         By which it is led.
     guess
         Fitted to lines.
+    most
+        What leaves more than this at the end is of no use: it is given up where it is seen to.
 
     Returns
     -------
     Followed
         From where the ring is to be followed, and what is left there up to `STRETCH`.
     """
-    at, known = Followed(guess.point.nuisance, guess.state), as_told(guess)
+    at, known = Followed(guess.nuisance, guess.state), as_told(guess)
     for times in HELD:
         way = Way(samples, at, None, known._replace(information=times * known.information))
         for _ in range(STEPS):
             if not way.step(STRETCH, lost=np.inf):
                 break
         at = replace(way.at, share=STRETCH, left=way.left(STRETCH))
+        if times <= FAR_OFF[0] and at.left > FAR_OFF[1] * most:
+            break
     return at
 
 
-def as_told(guess: Fitted) -> Known:
+def as_told(guess: Guess) -> Known:
     """What lines tell of a hypothesis; of nuisances, what was known before.
 
     Parameters
@@ -65,7 +72,7 @@ def as_told(guess: Fitted) -> Known:
     guess
         Fitted to lines.
     """
-    state, count = guess.state, len(guess.point.nuisance)
+    state, count = guess.state, len(guess.nuisance)
     sigmas = [_told(state.numbers[i], float(state.values[i])) for i in state.free]
     at = np.concatenate([np.zeros(count), state.values[list(state.free)]])
     information = np.concatenate([np.ones(count), np.array(sigmas) ** -2.0])

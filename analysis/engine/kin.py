@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Part
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -93,9 +93,9 @@ def lead_from(
 def kin_of(
     best: Followed,
     led: Sequence[Followed],
-    others: Sequence[Fitted],
+    others: Sequence[Guess],
     candidates: Mapping[str, Candidate],
-) -> list[Fitted]:
+) -> list[Guess]:
     """Other laws of the things that came as far as the best.
 
     Parameters
@@ -113,7 +113,7 @@ def kin_of(
     far = [one for one in led if one.reached[0] == share and one.reached[1] < cost + BEHIND]
     known = {one.names for one in led}
     kin = {candidates[name].family for one in far for name in one.names} - {""}
-    found: dict[tuple[str, ...], Fitted] = {}
+    found: dict[tuple[str, ...], Guess] = {}
     for one in others:
         names = one.hypothesis.names
         if names not in known and candidates[names[0]].family in kin:
@@ -122,8 +122,8 @@ def kin_of(
 
 
 def kin_alike(
-    best: Followed, others: Sequence[Fitted], candidates: Mapping[str, Candidate]
-) -> list[Fitted]:
+    best: Followed, others: Sequence[Guess], candidates: Mapping[str, Candidate]
+) -> list[Guess]:
     """Laws of the same thing as the best, where that is on in some places only.
 
     Which places are on was a guess, over a short stretch: one law's is no guide for another.
@@ -144,7 +144,7 @@ def kin_alike(
     (known,) = best.names
     family = candidates[known].family
 
-    def is_kin(one: Fitted) -> bool:
+    def is_kin(one: Guess) -> bool:
         (name,) = one.hypothesis.names
         return name == known or bool(family and candidates[name].family == family)
 

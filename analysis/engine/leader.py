@@ -15,6 +15,7 @@ from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
 from analysis.engine.part import records_of
 from analysis.engine.places import is_placed
 from analysis.engine.refine import Refiner
@@ -139,7 +140,7 @@ class Leader:
         if self._progress is not None:
             self._progress(len(self._led), len(self._led))
 
-    def _fresh(self, hypotheses: Sequence[Fitted]) -> list[Fitted]:
+    def _fresh(self, hypotheses: Sequence[Guess]) -> list[Guess]:
         """Those that were not led to the end before, nor lost from about the same start."""
         known = {one.names for one in self._led if one.to_end}
         fresh = [one for one in hypotheses if one.hypothesis.names not in known]

@@ -13,8 +13,8 @@ from analysis.engine.all_samples import (
 )
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint_search import most_promised, nuisances_of
-from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
 from analysis.engine.judge import NOISE
 from analysis.engine.kin import kin_alike, kin_left, lead_from, lead_instead
 from analysis.engine.leader import Leader
@@ -43,9 +43,9 @@ class RivalLeader(Leader):
     Parameters are those of `Leader`.
     """
 
-    def _is_kin(self, fitted: Fitted) -> bool:
+    def _is_kin(self, guess: Guess) -> bool:
         """Whether it will be led from where another law of its kind came to the end."""
-        names = (self._best.names, fitted.hypothesis.names)
+        names = (self._best.names, guess.hypothesis.names)
         if self._near or not self._best.to_end or any(len(one) != 1 for one in names):
             return False
         one, other = (self._refiner.candidates[name].family for (name,) in names)
@@ -66,14 +66,14 @@ class RivalLeader(Leader):
             if found is not None:
                 self._keep(found)
 
-    def _lead_alike(self, others: Sequence[Fitted]) -> None:
+    def _lead_alike(self, others: Sequence[Guess]) -> None:
         """Laws of the best's kind in all places alike, where it leaves more than noise."""
         best = self._best
         if best.left < NOISE:
             return
         for one in kin_alike(best, others, self._refiner.candidates):
             found = follow_ring(
-                self._system, one.point.nuisance, one.state.alike(), everything=True,
+                self._system, one.nuisance, one.state.alike(), everything=True,
                 ahead=best.costs,
             )  # fmt: skip
             # What falls behind says nothing of its kind: that is led from the best's own places.

@@ -8,6 +8,7 @@ from analysis.engine.by_ring import Found, Led, Start, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
+from analysis.engine.guess import Guess
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.more_leader import FAR_BEHIND
@@ -158,7 +159,7 @@ def _by_lines(
     """By lines, the ring left out; what is found there is led to the phase of the ring, if any."""
     finder = Finder(refiner, _terms(refiner, tell), tell)
     singles = finder.singles(null)
-    alone = [one for one in finder.ranked() if one.hypothesis.parts]
+    alone = _guesses(finder.ranked())
     if led is not None:
         told = [*_to_follow(refiner, null, led.single, alone), *_as_likely(refiner, null, alone)]
         led.search.follow(told, [*alone, *led.single], seen=True)
@@ -174,9 +175,13 @@ def _by_lines(
     if led is None:
         return Found(singles, ranked, faint=False)
     if not led.search.arrived:
-        led.search.follow(_to_follow(refiner, null, (), ranked), alone, seen=True)
+        led.search.follow(_to_follow(refiner, null, (), _guesses(ranked)), alone, seen=True)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
+
+
+def _guesses(ranked: Sequence[Fitted]) -> list[Guess]:
+    return [Guess.of(one) for one in ranked if one.hypothesis.parts]
 
 
 def _terms(refiner: Refiner, tell: Tell | None) -> Columns:
@@ -193,17 +198,17 @@ def _terms(refiner: Refiner, tell: Tell | None) -> Columns:
 def _to_follow(
     refiner: Refiner,
     null: Fitted,
-    promises: Sequence[Fitted],
-    ranked: Sequence[Fitted],
-) -> list[Fitted]:
+    promises: Sequence[Guess],
+    ranked: Sequence[Guess],
+) -> list[Guess]:
     """Hypotheses worth leading to the ring's phase, one for each set of candidates.
 
     What the ring promises, and what is likely without it: of laws of one thing the likeliest.
     """
     least = null.log_score - UNLIKELY
-    kinds: dict[frozenset[str], Fitted] = {}
+    kinds: dict[frozenset[str], Guess] = {}
     for one in ranked:
-        if one.hypothesis.parts and one.log_score > least:
+        if one.log_score > least:
             kinds.setdefault(_kind(refiner, one), one)
     likely = list(kinds.values())[:FOLLOWED]
     # Which places are on, lines tell better, where they tell anything.
@@ -211,13 +216,13 @@ def _to_follow(
     most = max((one.log_score for one in promises), default=0.0) - FAR_BEHIND
     told = [one for one in promises[:FOLLOWED] if one.log_score > most]
     known = (*(seen.get(one.hypothesis.names, one) for one in told), *likely)
-    tried: dict[tuple[str, ...], Fitted] = {}
+    tried: dict[tuple[str, ...], Guess] = {}
     for one in known:
         tried.setdefault(one.hypothesis.names, one)
     return list(tried.values())
 
 
-def _as_likely(refiner: Refiner, null: Fitted, ranked: Sequence[Fitted]) -> list[Fitted]:
+def _as_likely(refiner: Refiner, null: Fitted, ranked: Sequence[Guess]) -> list[Guess]:
     """Laws of what is likeliest that lines do not tell from it: one for each, the likeliest first.
 
     A law's error of form is a share of what it explains, so much are the others not behind.
@@ -226,7 +231,7 @@ def _as_likely(refiner: Refiner, null: Fitted, ranked: Sequence[Fitted]) -> list
         return []
     first = ranked[0]
     behind = AS_LIKELY * (first.log_score - null.log_score)
-    kin: dict[tuple[str, ...], Fitted] = {}
+    kin: dict[tuple[str, ...], Guess] = {}
     for one in ranked:
         if (
             _kind(refiner, one) == _kind(refiner, first)
@@ -237,18 +242,18 @@ def _as_likely(refiner: Refiner, null: Fitted, ranked: Sequence[Fitted]) -> list
 
 
 def _both(
-    refiner: Refiner, null: Fitted, promises: Sequence[Fitted], alone: Sequence[Fitted]
-) -> list[Fitted]:
+    refiner: Refiner, null: Fitted, promises: Sequence[Guess], alone: Sequence[Guess]
+) -> list[Guess]:
     """What the ring promises beside what lines tell, where these are two kinds of thing.
 
     Over a short stretch a ring tells nothing of a camera, and lines tell little of a ring: where
     neither of two causes comes to the end alone, both may together.
     """
-    kinds: dict[frozenset[str], Fitted] = {}
+    kinds: dict[frozenset[str], Guess] = {}
     for one in promises:
         kinds.setdefault(_kind(refiner, one), one)
     rung = list(kinds.items())[:FOLLOWED]
-    seen: dict[frozenset[str], Fitted] = {}
+    seen: dict[frozenset[str], Guess] = {}
     for one in alone:
         if one.log_score > null.log_score + SEEN:
             seen.setdefault(_kind(refiner, one), one)
@@ -260,11 +265,11 @@ def _both(
                 hypothesis = ring.hypothesis.plus(*next(iter(line.hypothesis.parts.items())))
                 values = ring.state.term_values() | line.state.term_values()
                 state = State.at(hypothesis, values, refiner.candidates)
-                found.append(refiner.standing(state, ring.point.nuisance))
+                found.append(Guess(state, ring.nuisance))
     return found
 
 
-def _kind(refiner: Refiner, fitted: Fitted) -> frozenset[str]:
+def _kind(refiner: Refiner, guess: Guess) -> frozenset[str]:
     """Of what its causes are laws."""
-    names = fitted.hypothesis.names
+    names = guess.hypothesis.names
     return frozenset(refiner.candidates[name].family or name for name in names)

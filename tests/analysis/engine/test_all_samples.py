@@ -9,6 +9,7 @@ from analysis.engine import all_samples
 from analysis.engine.all_samples import all_samples_say, rise_beside_form, tells_more
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
@@ -136,10 +137,9 @@ def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refin
     both = Hypothesis({"damping": Part(("rate",)), "step": Part(("high",), False, {"moment": 9.0})})
     values = {("damping", "rate"): 0.19, ("step", "high"): 0.002}
     state = State.at(both, values, {one.name: one for one in (DAMPING, STEP)})
-    pair = refiner.at(state, np.zeros(1))
     nothing = replace(follow_ring(DAMPED, np.zeros(1), everything=True), columns=None)
     search = FollowedSearch(refiner, nothing, 2)
-    search.follow([pair], [])
+    search.follow([Guess(state, np.zeros(1))], [])
     found = search.fitted()
     assert found is not None
     assert found[0].hypothesis.names == ("damping",)

@@ -38,8 +38,8 @@ def test_parameters_that_were_bent_on_a_long_way_and_lost_are_led_free_of_what_i
     found = _bent(refiner, nothing, np.array([0.5]))
     assert [one.hypothesis.names for one in found] == ([("tone",)] if asked else [])
     for one in found:
-        assert one.values["tone", "share"] == pytest.approx(sigmas * SIGMA)
-        assert one.point.nuisance[0] == 0.0
+        assert one.state.term_values()["tone", "share"] == pytest.approx(sigmas * SIGMA)
+        assert one.nuisance[0] == 0.0
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint import Faint, faint
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
@@ -144,7 +145,7 @@ def test_rivals_of_what_explains_to_the_noise_wait_for_one_cause_more(
     search = FollowedSearch(refiner, nothing, 2)
     known = {one.name: one for one in system.candidates}
     state = State.at(Hypothesis({"true": Part(("size",))}), {("true", "size"): 1.0}, known)
-    search.follow([refiner.at(state, np.zeros(len(seen.calibrated.at)))], [])
+    search.follow([Guess(state, np.zeros(1))], [])
     found = search.fitted()
     assert found is not None
     assert found[0].hypothesis.names == (("raised", "true") if more else ("true",))

@@ -8,9 +8,8 @@ import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
 from analysis.engine.graduated import STRETCH, as_told, graduated
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.look import look
-from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
@@ -88,9 +87,7 @@ def test_it_may_come_to_the_end_of_its_range() -> None:
 def test_numbers_that_lines_tell_are_led_to_the_rings_phase() -> None:
     true = state_of(0.6, 0.5)
     system = Sticking(true.point(np.array([1.5])))
-    lens, data, calibrated = look(system)
-    refiner = Refiner(system, lens, data, calibrated)
-    guess = refiner.standing(state_of(0.63, 0.47), np.zeros(1))
+    guess = Guess(state_of(0.63, 0.47), np.zeros(1))
     samples = Samples(system, everything=True)
     start = graduated(samples, guess)
     assert start.left < 2.0
@@ -104,9 +101,6 @@ def test_numbers_that_lines_tell_are_led_to_the_rings_phase() -> None:
 
 
 def test_what_lines_tell_is_known_to_a_share_and_nuisances_as_before() -> None:
-    system = Sticking(state_of(0.6, 0.5).point(np.zeros(1)))
-    lens, data, calibrated = look(system)
-    guess = Refiner(system, lens, data, calibrated).standing(state_of(0.8, 0.4), np.ones(1))
-    known = as_told(guess)
+    known = as_told(Guess(state_of(0.8, 0.4), np.ones(1)))
     assert known.at == pytest.approx([0.0, 0.8, 0.4])
     assert np.sqrt(1.0 / np.diag(known.information)) == pytest.approx([1.0, 0.04, 0.06])

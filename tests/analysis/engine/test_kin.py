@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
 
-from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.kin import instead, kin_alike, lead_instead, part_of_the_way
 from analysis.engine.ring_samples import Samples
@@ -77,15 +76,11 @@ def test_places_alike_are_all_of_them_as_strong_on_average() -> None:
     assert alike.alike() is alike
 
 
-def single(state: State) -> Fitted:
-    return cast(Fitted, SimpleNamespace(hypothesis=state.hypothesis, state=state))
-
-
 def test_laws_of_one_kind_are_asked_in_all_places_where_one_came_through_in_some() -> None:
     some = dry_on(**{"size@1": 0.6})
     capstan = instead(some, "dry", "capstan")
     assert capstan is not None
-    both = [single(some), single(capstan)]
+    both = [Guess(one, np.zeros(1)) for one in (some, capstan)]
     costs = {1.0: 5.0}
     best = Followed(np.zeros(1), some, costs=costs)
     assert kin_alike(best, both, CANDIDATES) == both
