@@ -103,7 +103,8 @@ class FollowedSearch(MoreLeader):
             return
         if not self._near:
             tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
-            if not tells:
+            # Of a single recording lines are asked before the ring is asked for more.
+            if not tells and (seen or self._enough is not None):
                 self._lead_next(others, self._is_farther)
             if not (tells or self._is_farther(self._best)):
                 return
