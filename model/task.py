@@ -1,6 +1,6 @@
 """One simulation as asked for, made ready for either kernel."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import signature
@@ -31,6 +31,9 @@ SHORTEST_STEP_S = 2e-5
 """Steeper friction than this can follow trembles at rest, by less than its own switch."""
 
 DRIVES = ("wrench", "winch")
+
+THRIFTY = ("dop853", "dp5")
+"""Methods that a fit chooses from."""
 
 
 @dataclass(frozen=True)
@@ -151,7 +154,7 @@ class Task:
         """Which cells sit behind their pulley, shape (8,)."""
         return np.array([cable.cell != "platform" for cable in self.rig.cable])
 
-    def step_s(self, method: Method, *, thrifty: bool = False) -> float:
+    def step_s(self, method: Method, *, thrifty: bool = False, finer: float = 1.0) -> float:
         """The longest step a method should take, by the highest tone and the sharpest switch.
 
         Parameters
@@ -160,8 +163,10 @@ class Task:
             Of which.
         thrifty
             For a fit; see `thrifty`.
+        finer
+            So many times as many steps for each tone.
         """
-        of_tones_s = method.step_s(self._highest_tone_hz, thrifty=thrifty)
+        of_tones_s = method.step_s(self._highest_tone_hz, thrifty=thrifty) / finer
         decay = self._fastest_decay_1_per_s
         of_decay_s = max(method.stable / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
         stuck = self._stuck_rad_per_s
@@ -194,13 +199,18 @@ class Task:
                 found += slope(**{name: known[name] for name in signature(slope).parameters})
         return found
 
-    def thrifty(self, output_rate_hz: float) -> tuple[str, float]:
+    def thrifty(
+        self, output_rate_hz: float, finer: Mapping[str, float] | None = None
+    ) -> tuple[str, float]:
         """The method and step that evaluate the right-hand side least often for a fit.
 
         Parameters
         ----------
         output_rate_hz
             Rows a second.
+        finer
+            Method -> so many times as many steps for each tone, where a ring is so strong that a
+            thousandth of it stands out of the noise.
 
         Returns
         -------
@@ -209,9 +219,9 @@ class Task:
             ring to about a thousandth of its amplitude over hundreds of periods.
         """
         found = []
-        for name in ("dop853", "dp5"):
+        for name in THRIFTY:
             method = find_method(name)
-            step_s = self.step_s(method, thrifty=True)
+            step_s = self.step_s(method, thrifty=True, finer=(finer or {}).get(name, 1.0))
             divisions, joined = steps_a_row(output_rate_hz, step_s, join=method.inside)
             stages = method.step_weights.size if joined == 1 else method.nodes.size
             found.append((stages * divisions / joined, name, joined / divisions / output_rate_hz))

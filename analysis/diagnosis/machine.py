@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from analysis.diagnosis.candidates import candidates, library_values
 from analysis.diagnosis.crew import Crew
+from analysis.diagnosis.fineness import finer_steps
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
 from analysis.diagnosis.nuisances import Meaning, nuisances
@@ -105,6 +106,7 @@ class RecordedMachine:
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
         self.peaks_n = self._peaks()
+        self._finer = [self._finer_steps(record) for record in range(len(recordings))]
 
     def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
         """The same machine, where less of its recordings counts.
@@ -208,10 +210,10 @@ class RecordedMachine:
             for place, point in work.points.items()
         }
         tasks = {job.key: job.task for jobs in all_jobs.values() for job in jobs}
-        rate_hz = self.recordings[work.record].output_hz
+        rate_hz, finer = self.recordings[work.record].output_hz, self._finer[work.record]
         alike: dict[tuple[str, float], list[Key]] = {}
         for key, task in tasks.items():
-            alike.setdefault(task.thrifty(rate_hz), []).append(key)
+            alike.setdefault(task.thrifty(rate_hz, finer), []).append(key)
         done: dict[Key, Simulation] = {}
         for (method, step_s), keys in alike.items():
             solved = simulate_many(
@@ -265,6 +267,10 @@ class RecordedMachine:
                     for key, one in own.items()
                 }
         return self._moving[record].by(point.nuisance, values)
+
+    def _finer_steps(self, record: int) -> dict[str, float]:
+        job = self.job(Point(np.zeros(len(self._known))), record)
+        return finer_steps(self.recordings[record], job.task, job.sight)
 
     def _peaks(self) -> list[float]:
         """Highest tension of each cable over all runs, as simulated or as recorded, N.
