@@ -81,5 +81,5 @@ def transverse_acceleration(
 
 
 def tone_hz(tension_n: Quantity, line_density: Quantity, length: Quantity) -> Quantity:
-    """The cable's own first tone, sqrt(T/(rho A)) / (2 L), in Hz."""
-    return np.sqrt(tension_n / line_density) / (2.0 * length)
+    """The cable's own first tone, sqrt(T/(rho A)) / (2 L), in Hz; 0 where it hangs slack."""
+    return np.sqrt(np.maximum(tension_n, 0.0) / line_density) / (2.0 * length)

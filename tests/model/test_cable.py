@@ -34,6 +34,10 @@ def test_a_still_cable_swings_at_its_own_tone() -> None:
     )
 
 
+def test_a_slack_cable_has_no_tone() -> None:
+    assert list(cable.tone_hz(np.array([-3.0, 0.0]), 0.009, 3.0)) == [0.0, 0.0]
+
+
 def test_running_along_lowers_the_tone_and_damping_opposes_the_motion() -> None:
     still = cable.transverse_acceleration(1e-3, 0.0, 12.0, 0.0, 3.0, 0.009, 4.0)
     running = cable.transverse_acceleration(1e-3, 0.0, 12.0, -5.0, 3.0, 0.009, 4.0)
