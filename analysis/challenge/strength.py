@@ -5,6 +5,7 @@ import numpy as np
 from analysis.challenge.case import Case
 from analysis.challenge.plants import Concealed
 from analysis.challenge.visibility import Metric, shows
+from cdpr8.errors import DataError
 
 LIMIT = (10.0, 30.0)
 """By how much an effect near the limit is to stand out."""
@@ -20,6 +21,9 @@ FARTHEST_RAD = 0.6
 
 ROUNDS = 4
 CLOSE = 1.3
+
+HALVINGS = 12
+"""An effect is made smaller so often at most."""
 
 
 def of_strength(
@@ -68,10 +72,29 @@ def of_strength(
 
 
 def tamed(case: Case) -> Case:
-    """The same case, its effects made smaller until the machine holds together."""
-    while case.concealed and not holds(case, case.plant.look_step_s):
+    """The same case, its effects made smaller until the machine holds together.
+
+    Raises
+    ------
+    DataError
+        It does not, however small they are: what comes apart is the integration.
+    """
+    steps_s = (case.plant.longest_step_s(run.rig, case.concealed) for run in case.runs)
+    step_s = min(case.plant.look_step_s, *steps_s)
+    for _ in range(HALVINGS):
+        if not case.concealed or holds(case, step_s):
+            return case
         case = case.with_concealed(*(one.resized(0.5 * one.size) for one in case.concealed))
-    return case
+    raise DataError(
+        f"the machine does not hold together with {' and '.join(_names(case))}, "
+        f"made {2**HALVINGS} times smaller, in steps of {1e6 * step_s:g} us",
+        where=case.name,
+        remedy="give that plant shorter steps",
+    )
+
+
+def _names(case: Case) -> list[str]:
+    return [one.effect.name for one in case.concealed]
 
 
 def holds(case: Case, step_s: float) -> bool:

@@ -13,6 +13,7 @@ from analysis.challenge.make import make
 from analysis.challenge.plant.concealed import Concealed, catalogue
 from analysis.challenge.plant.machine import Offset
 from analysis.challenge.plant.record import Sensing
+from analysis.challenge.plants import plant_named
 from analysis.challenge.rig_text import rig_text
 from analysis.challenge.rigs import cdpr8, drawn_machine, with_pretension
 from analysis.challenge.seal import open_seal
@@ -216,6 +217,23 @@ def test_a_machine_that_comes_apart_says_so_and_is_no_run(short: Case) -> None:
     tame = tamed(case)
     assert 1.0 < tame.concealed[0].size < 2e4
     assert holds(tame, 5e-4)
+
+
+def test_bristles_are_not_made_smaller_for_steps_that_are_too_long() -> None:
+    # They relax as fast, however weak: in the steps by which a swing is looked at they fly apart.
+    slot = Slot(1, "single", ("pulley_stribeck",), ("limit",))
+    case = draw_case(slot, np.random.SeedSequence(3), plant_named("outsider"))
+    assert not holds(case, case.plant.look_step_s)
+    assert tamed(case).concealed == case.concealed
+
+
+def test_a_machine_that_cannot_be_integrated_is_no_case(
+    short: Case, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("analysis.challenge.strength.holds", lambda *_: False)
+    dampers = Concealed(catalogue()["cable_viscous"], 1.0, (1,), {})
+    with pytest.raises(DataError, match="cable_viscous"):
+        tamed(short.with_concealed(dampers))
 
 
 @pytest.mark.slow
