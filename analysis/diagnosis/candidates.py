@@ -50,7 +50,15 @@ POLICIES: dict[str, Policy] = {
     "air_drag": Policy(shapes={"arm_m": (0.15,)}),
     "anchor_play": Policy(shapes={"hold_n": (0.25, 0.8), "slide_s": (1e-3,)}, form_share=0.3),
     "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
-    "cable_hysteresis": Policy(shapes={"yield_m": (5e-4, 2e-3)}),
+    # A rig's stiffness may have been measured before fibres slip, or after.
+    "cable_hysteresis": Policy(
+        shapes={
+            "yield_m": (5e-4, 2e-3),
+            "bouc_wen_share": (0.0, 1.0),
+            "bend": (0.5,),
+            "counted_share": (0.5,),
+        }
+    ),
     "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
     "cable_slack": Policy(form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),
@@ -111,6 +119,9 @@ FAMILIES = (
 WHOLE = ("left_at_rest",)
 """Shapes that are one thing or another."""
 
+BETWEEN = ("bouc_wen_share", "bend", "counted_share")
+"""Shapes that lead from one law to another."""
+
 SHARPEST = 3.0
 """Presliding this many times shorter than it is screened at is Coulomb's law."""
 
@@ -167,7 +178,8 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
             terms.append(_term(one, step, ""))
     shapes = tuple(
         Shape(one.name, one.unit, one.default, _lowest(one, policy), one.high,
-              policy.shapes[one.name], logarithmic=one.low > 0.0, whole=one.name in WHOLE)
+              policy.shapes[one.name], logarithmic=one.low > 0.0, whole=one.name in WHOLE,
+              between=one.name in BETWEEN)
         for one in effect.parameters
         if one.name in policy.shapes
     )  # fmt: skip

@@ -254,12 +254,13 @@ class State:
         """Numbers at an edge of their range that is not zero, with their candidate."""
         found = []
         for number, value in zip(self.numbers, self.values, strict=True):
-            if not number.step or (number.shape is not None and number.shape.term):
+            shape = number.shape
+            if not number.step or (shape is not None and (shape.term or shape.between)):
                 continue
             reach = 1e-3 * (number.high - number.low)
             low = value <= number.low + reach and number.low != 0.0
             if low or value >= number.high - reach:
-                what = number.shape.name if number.shape else number.terms[0]
+                what = shape.name if shape else number.terms[0]
                 found.append((number.candidate, what))
         return tuple(found)
 

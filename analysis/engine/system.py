@@ -172,6 +172,8 @@ class Shape:
     term
         The magnitude it belongs to, such as the state in which one cable of many begins: it counts
         where that is on, and may well come to the end of its range. "": it belongs to all.
+    between
+        It leads from one law to another: at the end of its range it is one of them.
     """
 
     name: str
@@ -184,6 +186,7 @@ class Shape:
     whole: bool = False
     finest: float = 0.0
     term: str = ""
+    between: bool = False
 
 
 @dataclass(frozen=True)

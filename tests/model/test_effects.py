@@ -238,6 +238,37 @@ def test_strands_that_yield_evenly_lose_what_many_of_them_would(share: float) ->
     assert wanted / 2.0 < answer.quadrature[1] < 2.0 * wanted
 
 
+@pytest.mark.parametrize(("bend", "power"), [(0.0, 1.0), (1.0, 2.0)])
+def test_a_loop_that_softens_from_the_first_is_bouc_and_wens(bend: float, power: float) -> None:
+    alpha, stiffness, yield_m, amplitude = 0.2, 1410.0, 5e-3, 4e-3
+    values = {"loop_share": alpha, "yield_m": yield_m, "bouc_wen_share": 1.0, "bend": bend}
+    answer = cable_response(library()["cable_hysteresis"], values, amplitude_m=amplitude)
+    # z' = x' (1 - r^n) where |z| grows and x' where it falls, after enough cycles to repeat.
+    phase = np.linspace(0.0, 12.0 * np.pi, 120_001)
+    x, z = amplitude * np.sin(phase), np.zeros(phase.size)
+    for i, step in enumerate(np.diff(x)):
+        grows = step * z[i] > 0.0
+        z[i + 1] = z[i] + step * (1.0 - (abs(z[i]) / yield_m) ** power * grows)
+    last = phase >= 10.0 * np.pi
+    quadrature = alpha * stiffness * 2.0 * np.mean(z[last] * np.cos(phase[last]))
+    in_phase = alpha * stiffness * 2.0 * np.mean(z[last] * np.sin(phase[last]))
+    assert answer.quadrature[1] == pytest.approx(quadrature, rel=0.03)
+    assert answer.in_phase[1] == pytest.approx(in_phase, rel=0.03)
+
+
+def test_what_the_stiffness_counts_of_a_loop_already_is_taken_off() -> None:
+    effect = library()["cable_hysteresis"]
+    alpha, amplitude = 0.1, 1e-4
+    values = {"loop_share": alpha, "yield_m": 5e-3}
+    none, all_ = (
+        cable_response(effect, values | {"counted_share": share}, amplitude_m=amplitude)
+        for share in (0.0, 1.0)
+    )
+    assert none.in_phase[1] == pytest.approx(alpha * 1410.0 * amplitude, rel=0.05)
+    assert abs(all_.in_phase[1]) < 0.05 * none.in_phase[1]
+    assert all_.quadrature[1] == pytest.approx(none.quadrature[1])
+
+
 def test_stiffening_is_a_third_harmonic_in_phase() -> None:
     answer = cable_response(library()["cable_stiffening"])
     assert answer.share(3) == pytest.approx(1 / 3)
