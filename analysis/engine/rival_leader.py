@@ -22,6 +22,7 @@ from analysis.engine.moved import freed
 from analysis.engine.places import is_placed, placed_again
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
+from analysis.engine.way import HOPELESS
 
 EXCHANGES = 2
 """From what rivals have led to, rivals are looked for once more: so often at a time."""
@@ -79,6 +80,32 @@ class RivalLeader(Leader):
             # What falls behind says nothing of its kind: that is led from the best's own places.
             if farthest_first(found) < farthest_first(self._best):
                 self._keep(found)
+
+    def _lead_everywhere(self) -> None:
+        """Each cause of what explains to the noise, and its kin, in all places alike.
+
+        One number says less than some and where they are: what does as well with it is there. In
+        the places that one law has chosen, another does not show how well it would do.
+        """
+        for known in self._best.names:
+            best = self._best
+            if best.state is None or not best.to_end or best.left > NOISE:
+                return
+            state = best.state.alike(known) if known in best.names else best.state
+            if state is best.state or (known, best.names) in self._everywhere:
+                continue
+            self._everywhere.add((known, best.names))
+            alike = lead_from(self._system, best, state)
+            self._keep(alike)
+            if not alike.to_end or alike.misfit > HOPELESS * best.misfit:
+                continue
+            candidates = self._refiner.candidates
+            family = candidates[known].family
+            for name, one in candidates.items():
+                if family and one.family == family and name != known:
+                    found = lead_instead(self._samples, alike, known, name)
+                    if found is not None:
+                        self._keep(found)
 
     @property
     def _in_place(self) -> list[Followed]:
@@ -148,6 +175,7 @@ class RivalLeader(Leader):
         for _ in range(EXCHANGES):
             self._lead_placed()
             self._lead_kin(self._best)
+            self._lead_everywhere()
             plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)
             if plain is None or plain.names in self._exchanged or self._effort > self._most:
                 break

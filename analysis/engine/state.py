@@ -188,10 +188,18 @@ class State:
             self.values[keep],
         )
 
-    def alike(self) -> "State":
-        """With all places of every cause on, alike, as strong on average as the places that are."""
+    def alike(self, only: str = "") -> "State":
+        """With all places of causes on, alike, as strong on average as the places that are.
+
+        Parameters
+        ----------
+        only
+            Of this cause; "": of every one.
+        """
         hypothesis, magnitudes = self.hypothesis, self.term_values()
         for name, part in self.hypothesis.parts.items():
+            if only and name != only:
+                continue
             candidate = self.candidates[name]
             every = tuple(one.name for one in candidate.terms)
             if candidate.shareable and not candidate.together and len(every) > 1:
