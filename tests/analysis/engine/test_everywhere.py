@@ -1,0 +1,101 @@
+"""What explains to the noise in some places is asked in all places alike, and its kin there too."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Term
+from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.guess import Guess
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.look import look
+from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.state import State
+from analysis.engine.system import Array, Prediction
+
+T_S = np.arange(0.0, 20.0, 0.02)
+NOISE, TONE_HZ = 0.01, 5.0
+PLACES = "1234"
+OFF = {"loss": 0.0, "kindred": 0.008}
+"""How far each law is from the first."""
+
+
+def law(name: str) -> Candidate:
+    terms = tuple(Term(f"size@{p}", "size", "N", p, 0.0, 5.0, 0.3) for p in PLACES)
+    return Candidate(name, name, "plant", terms, family="losses", form_share=0.05)
+
+
+KNOWN = {name: law(name) for name in OFF}
+
+
+class Summed:
+    """A ring with a loss that is the sum of what its places lose: one channel tells no place."""
+
+    name = "summed"
+    nuisances: Sequence[Nuisance] = (Nuisance("tone", 0.01, "1"),)
+    candidates: Sequence[Candidate] = tuple(KNOWN.values())
+
+    def __init__(self) -> None:
+        alike = {f"size@{p}": 0.25 for p in PLACES}
+        value = self._one(State.at(part("loss", alike, True), of("loss", alike), KNOWN).point(ZERO))
+        value = value + NOISE * np.random.default_rng(5).standard_normal(value.shape)
+        segments = (Segment(0.0, 20.0, None, 20.0),)
+        self.bundles = (
+            Bundle(("y",), ("V",), T_S, value, np.eye(1) * NOISE**2, segments, tones_hz=(TONE_HZ,)),
+        )
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return [reduce([self._one(point)]) for point in points]
+
+    def tones_hz(self, point: Point) -> Array:
+        """See `Ringing`."""
+        return np.array([TONE_HZ * (1.0 + 0.01 * float(point.nuisance[0]))])
+
+    def _one(self, point: Point) -> Array:
+        value = np.sin(2.0 * np.pi * self.tones_hz(point)[0] * T_S)
+        for name, on in point.effects.items():
+            loss = np.sin(2.0 * np.pi * 0.7 * T_S) + OFF[name] * np.cos(2.0 * np.pi * 2.1 * T_S)
+            value = value + sum(on.values.values()) * loss
+        return np.asarray(value[:, None])
+
+
+ZERO = np.zeros(1)
+
+
+def part(name: str, sizes: dict[str, float], shared: bool) -> Hypothesis:
+    return Hypothesis({name: Part(tuple(sizes), shared)})
+
+
+def of(name: str, sizes: dict[str, float]) -> dict[tuple[str, str], float]:
+    return {(name, term): size for term, size in sizes.items()}
+
+
+def test_a_law_in_all_places_alike_is_found_from_its_kin_in_some() -> None:
+    system = Summed()
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    search = FollowedSearch(refiner, follow_ring(system, ZERO, everything=True), 2)
+    some = {"size@2": 0.5, "size@3": 0.4}
+    state = State.at(part("kindred", some, False), of("kindred", some), KNOWN)
+    search.follow([Guess(state, ZERO)], [])
+    found = search.fitted()
+    assert found is not None
+    best = found[0]
+    assert best.hypothesis.names == ("loss",)
+    assert best.hypothesis.parts["loss"].shared
+    assert set(best.hypothesis.parts["loss"].terms) == {f"size@{p}" for p in PLACES}
+    assert abs(best.values["loss", "size@1"] - 0.25) < 0.02
+
+
+def test_one_cause_of_two_is_made_alike_and_the_other_stays() -> None:
+    some, one = {"size@2": 0.4, "size@3": 0.4}, {"size@1": 0.3}
+    both = Hypothesis({"kindred": Part(tuple(some)), "loss": Part(tuple(one))})
+    state = State.at(both, of("kindred", some) | of("loss", one), KNOWN)
+    parts = state.alike("kindred").hypothesis.parts
+    assert parts["kindred"].shared
+    assert len(parts["kindred"].terms) == len(PLACES)
+    assert parts["loss"] == both.parts["loss"]
+    assert state.alike("kindred").alike("kindred").hypothesis.parts == parts
