@@ -35,6 +35,9 @@ SHOWN_SHARE = 0.1
 
 SHOWN_SIGMAS = 2.0
 
+AS_STRONG = 0.5, 1.0
+"""Beside cables that stand out, one that is so much of the strongest of them, by so many sigmas."""
+
 NOT_RULED_OUT = 0.1
 """Where nothing is named, what is likelier than this is told."""
 
@@ -94,19 +97,27 @@ def not_ruled_out(
 def cables_of(cause: Cause) -> list[int]:
     """Cables where it acts; none: it has no choice.
 
-    Those where it stands out of its uncertainty. Where it does nowhere, though it is there, its
-    size is open, as that of a friction within its presliding: then those where it is large.
+    Those where it stands out of its uncertainty, and those where it is about as strong: numbers of
+    shape leave the size of all of them open alike. Where it stands out nowhere, though it is there,
+    its size is open, as that of a friction within its presliding: then those where it is large.
     """
     places = {term: re.fullmatch(r".*@(\d+)", term) for term in cause.values}
     own = {term: int(match.group(1)) for term, match in places.items() if match is not None}
     largest = max((abs(cause.values[term]) for term in own), default=0.0)
     large = [term for term in own if abs(cause.values[term]) > SHOWN_SHARE * largest]
-    sure = [
+    sure = [term for term in large if _stands_out(cause, term, SHOWN_SIGMAS)]
+    share, sigmas = AS_STRONG
+    strong = share * max((abs(cause.values[term]) for term in sure), default=0.0)
+    beside = [
         term
         for term in large
-        if abs(cause.values[term]) > SHOWN_SIGMAS * cause.sigmas.get(term, 0.0)
+        if sure and abs(cause.values[term]) > strong and _stands_out(cause, term, sigmas)
     ]
-    return sorted({own[term] for term in sure or large})
+    return sorted({own[term] for term in [*sure, *beside] or large})
+
+
+def _stands_out(cause: Cause, term: str, sigmas: float) -> bool:
+    return abs(cause.values[term]) > sigmas * cause.sigmas.get(term, 0.0)
 
 
 def _cause(cause: Cause, sides: dict[str, str], machine: RecordedMachine) -> dict[str, Any]:

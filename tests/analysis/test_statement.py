@@ -20,9 +20,18 @@ def cause(values: dict[str, float], sigma: float) -> Cause:
         ({"coulomb_n@2": 0.3, "coulomb_n@7": 0.2, "coulomb_n@1": 0.01}, 0.02, [2, 7]),
         ({"coulomb_n@2": 0.018}, 0.023, [2]),
         ({"coulomb_n@2": 0.018, "coulomb_n@3": 0.017, "coulomb_n@4": 0.0}, 0.023, [2, 3]),
+        ({"coulomb_n@2": 0.05, "coulomb_n@3": 0.035, "coulomb_n@4": 0.026}, 0.024, [2, 3, 4]),
+        ({"coulomb_n@2": 0.3, "coulomb_n@3": 0.035}, 0.024, [2]),
         ({"drag_area_m2": 0.3}, 0.1, []),
     ],
-    ids=["some stand out", "one, its size open", "two, their sizes open", "no choice"],
+    ids=[
+        "some stand out",
+        "one, its size open",
+        "two, their sizes open",
+        "one stands out, and what is about as strong",
+        "one stands out, and what is far weaker",
+        "no choice",
+    ],
 )
 def test_cables_are_those_that_stand_out_or_all_where_sizes_are_open(
     values: dict[str, float], sigma: float, cables: list[int]
