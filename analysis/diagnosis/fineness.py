@@ -60,7 +60,7 @@ def _rms(bundle: Bundle, missed: Array) -> float:
     """Of the samples that count, in units of their noise."""
     inside = np.zeros(len(bundle.t_s), dtype=bool)
     for one in bundle.segments:
-        inside |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
+        inside |= one.holds(bundle.t_s)
     if not inside.any():
         return 0.0
     return float(np.sqrt(np.mean((missed / sigmas_of(bundle))[inside] ** 2)))

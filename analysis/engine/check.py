@@ -172,7 +172,7 @@ def looked_at(bundle: Bundle) -> NDArray[np.bool_]:
     """Which samples lie in a segment, shape (n,)."""
     inside = np.zeros(len(bundle.t_s), dtype=bool)
     for one in bundle.segments:
-        inside |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
+        inside |= one.holds(bundle.t_s)
     return inside
 
 

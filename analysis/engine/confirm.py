@@ -152,7 +152,7 @@ def sample_errors(system: System, point: Point, held: str = "") -> dict[str, dic
     sums: dict[str, dict[str, list[Array]]] = {"used": {}, "held_out": {}}
     for bundle, residual in zip(system.bundles, residuals, strict=True):
         for segment in bundle.segments:
-            inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
+            inside = segment.holds(bundle.t_s)
             away = segment.held_out or segment.sealed
             away = away or (held != "" and bundle.record == held and segment.name != "rest")
             if inside.any():

@@ -126,9 +126,7 @@ class Lens:
         group, stretch = 0, -1
         for b, bundle in enumerate(self.bundles):
             for s, segment in enumerate(bundle.segments):
-                inside = np.flatnonzero(
-                    (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
-                )
+                inside = np.flatnonzero(segment.holds(bundle.t_s))
                 if inside.size < 3:
                     continue
                 whiten = np.linalg.inv(np.linalg.cholesky(covariance_over(bundle, inside)))

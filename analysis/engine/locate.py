@@ -122,7 +122,7 @@ def _blocks(bundles: Sequence[Bundle], problem: Problem, residual: Array) -> tup
         own = np.flatnonzero(labels.stretch == stretch)
         bundle, channel = bundles[labels.bundle[own[0]]], int(labels.channel[own[0]])
         segment = bundle.segments[labels.segment[own[0]]]
-        inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
+        inside = segment.holds(bundle.t_s)
         t_s = bundle.t_s[inside]
         white = idct(residual[own] / np.sqrt(problem.base[own]), type=2, norm="ortho")
         plain = idct(residual[own], type=2, norm="ortho")
@@ -157,7 +157,7 @@ def _finding(
     bundle = bundles[labels.bundle[first]]
     channel = int(labels.channel[first])
     segment = bundle.segments[labels.segment[first]]
-    inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
+    inside = segment.holds(bundle.t_s)
     noise = float(np.sqrt(covariance_over(bundle, inside)[channel, channel]))
     # A unit vector of n samples of a cosine of amplitude a holds a sqrt(n / 2).
     scale = noise / np.sqrt(labels.samples[first] * (0.5 if labels.line[first] > 0 else 1.0))

@@ -182,7 +182,7 @@ def seen(
     for one in bundle.segments:
         kept_back = one.held_out or (held != "" and bundle.record == held and one.name != "rest")
         if not one.sealed and (everything or not kept_back):
-            chosen |= (bundle.t_s >= one.start_s) & (bundle.t_s < one.end_s)
+            chosen |= one.holds(bundle.t_s)
     places = np.flatnonzero(chosen)
     chosen[places[int(np.ceil(share * len(places))) :]] = False
     return chosen

@@ -123,7 +123,7 @@ def _check_segment(bundle: Bundle, segment: Segment, where: str) -> int:
             f"from {segment.start_s:g} to {segment.end_s:g} s", allowed="start_s below end_s",
             where=where, remedy="samples from start_s up to, not with, end_s are looked at",
         )  # fmt: skip
-    inside = (bundle.t_s >= segment.start_s) & (bundle.t_s < segment.end_s)
+    inside = segment.holds(bundle.t_s)
     t_s, value = bundle.t_s[inside], np.asarray(bundle.value[inside], dtype=float)
     bad = np.flatnonzero(~np.isfinite(value).all(axis=1))
     if bad.size:

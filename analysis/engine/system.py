@@ -44,6 +44,10 @@ class Segment:
     sealed: bool = False
     name: str = ""
 
+    def holds(self, t_s: Array) -> NDArray[np.bool_]:
+        """Which times lie in it, of shape (n,); its end does not."""
+        return np.asarray((t_s >= self.start_s) & (t_s < self.end_s))
+
 
 @dataclass(frozen=True)
 class Bundle:
