@@ -19,7 +19,9 @@ Array = NDArray[np.float64]
 AXES = ("roll", "pitch", "yaw")
 
 SERVO_S = 0.006
-"""Standard deviation of the gaussian by which a servo smooths the jumps of a gear with play, s."""
+"""Standard deviation of the gaussian by which a servo smooths the jumps of a gear with play, s.
+
+Of what play takes away alone: over the whole motion it would take 1.1 % of an amplitude at 4 Hz."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,8 @@ def angle(excitation: Excitation, fault: DriveFault, time_s: Array) -> Array:
         from scipy.ndimage import gaussian_filter1d
 
         step_s = float(time_s[1] - time_s[0])
-        found = gaussian_filter1d(behind_play(found, fault.play_rad / 2.0), SERVO_S / step_s)
+        lost = behind_play(found, fault.play_rad / 2.0) - found
+        found = found + gaussian_filter1d(lost, SERVO_S / step_s)
     return np.asarray(found)
 
 
