@@ -227,6 +227,7 @@ def _numbers(lanes: _Lanes) -> Array:
                 [plant.mass, plant.gravity],
                 plant.inertia.reshape(-1),
                 plant.inverse_inertia.reshape(-1),
+                plant.drive_arm,
             ]
         )
         platforms.append(platform[: PLATFORM["end"]])

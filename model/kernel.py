@@ -17,8 +17,8 @@ index      what                                                unit
 28 on      states of the left-out effects that are on          their own
 =========  ==================================================  ==============
 
-The drive is a row of numbers: force and moment about the centre of mass in O-XYZ and, where
-winches drive, the lengths they have paid out and the rates of these, cable by cable.
+The drive is a row of numbers: force and moment in O-XYZ, of a wrench that acts at `drive_arm`, and,
+where winches drive, the lengths they have paid out and the rates of these, cable by cable.
 """
 
 from typing import Any, NamedTuple
@@ -58,6 +58,7 @@ class Plant(NamedTuple):
     gravity: float
     inertia: Array
     inverse_inertia: Array
+    drive_arm: Array
     base: Array
     anchor: Array
     rest_length: Array
@@ -205,8 +206,10 @@ def derivative(state: Array, drive: Array, plant: Any, extras: Any, rate: Array)
     turn = rotation(angles)
     omega = angular_velocity(angles, rates)
 
-    force = (drive[0], drive[1], drive[2] - plant.mass * plant.gravity)
-    moment = (drive[3], drive[4], drive[5])
+    pushed = (drive[0], drive[1], drive[2])
+    drive_arm = transform(turn, (plant.drive_arm[0], plant.drive_arm[1], plant.drive_arm[2]))
+    force = subtract(pushed, (0.0, 0.0, plant.mass * plant.gravity))
+    moment = add((drive[3], drive[4], drive[5]), cross(drive_arm, pushed))
     for k in range(STATES, state.size):
         rate[k] = 0.0
     for i in range(cables):

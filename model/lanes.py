@@ -69,7 +69,8 @@ MASS = 0
 GRAVITY = LANES
 INERTIA = 2 * LANES
 INVERSE_INERTIA = 11 * LANES
-PLATFORM = 20 * LANES
+DRIVE_ARM = 20 * LANES
+PLATFORM = 23 * LANES
 """First of each number of the platform in its part of `q`."""
 
 TWO_OVER_PI = 0.6366197723675814
@@ -227,6 +228,23 @@ def cables_elastic(i: int, y: Array, command: Array, own: Array, work: Array) ->
         work[BEHIND + w] = 0.0
 
 
+def weigh(own: Array, work: Array) -> None:
+    """The drive's wrench about the centres of mass, and the weight."""
+    for w in range(LANES):
+        turn = (
+            (work[TURN + w], work[TURN + LANES + w], work[TURN + 2 * LANES + w]),
+            (work[TURN + 3 * LANES + w], work[TURN + 4 * LANES + w], work[TURN + 5 * LANES + w]),
+            (work[TURN + 6 * LANES + w], work[TURN + 7 * LANES + w], work[TURN + 8 * LANES + w]),
+        )
+        arm = (own[DRIVE_ARM + w], own[DRIVE_ARM + LANES + w], own[DRIVE_ARM + 2 * LANES + w])
+        pushed = (work[FORCE + w], work[FORCE + LANES + w], work[FORCE + 2 * LANES + w])
+        lever = cross(transform(turn, arm), pushed)
+        work[FORCE + 2 * LANES + w] -= own[MASS + w] * own[GRAVITY + w]
+        work[MOMENT + w] += lever[0]
+        work[MOMENT + LANES + w] += lever[1]
+        work[MOMENT + 2 * LANES + w] += lever[2]
+
+
 def take_up(work: Array) -> None:
     """The whole tension, and what it does to the platforms."""
     for w in range(LANES):
@@ -349,8 +367,7 @@ def lane_derivative(y: Array, command: Array, q: Array, extras: Any, work: Array
     for k in range(WRENCH):
         for w in range(LANES):
             work[FORCE + k * LANES + w] = command[k, w * spread]
-    for w in range(LANES):
-        work[FORCE + 2 * LANES + w] -= platform[MASS + w] * platform[GRAVITY + w]
+    weigh(platform, work)
     for k in range(STATES * LANES, y.size):
         f[k] = 0.0
     for i in range(CABLES):

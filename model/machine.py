@@ -1,6 +1,6 @@
 """One machine as plain arrays: what the equations of motion need of a rig file, and no more."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
@@ -41,6 +41,11 @@ class Machine:
         c_wi of Eq. 17, shape (8,), 1/s.
     gravity
         Along -Z, m/s2.
+    drive_arm
+        Where the drive's wrench acts, from the centre of mass in the platform frame, shape (3,), m.
+    held
+        What holds the rig file's machine at rest at X* = 0 beside cables and weight, force and
+        moment, shape (6,), N and N m: what its numbers leave of static equilibrium.
     """
 
     mass: float
@@ -52,11 +57,13 @@ class Machine:
     line_density: Array
     damping: Array
     gravity: float = STANDARD_GRAVITY_M_PER_S2
+    drive_arm: Array = field(default_factory=lambda: np.zeros(3))
+    held: Array = field(default_factory=lambda: np.zeros(6))
 
     @classmethod
     def from_rig(cls, rig: Rig) -> Self:
         """The machine a rig file describes."""
-        return cls(
+        found = cls(
             mass=rig.platform.mass_kg.value,
             inertia=inertia_tensor(rig),
             base=np.array([cable.base_m.value for cable in rig.cable]),
@@ -66,6 +73,7 @@ class Machine:
             line_density=np.array([cable.line_density_kg_per_m.value for cable in rig.cable]),
             damping=np.array([cable.damping_1_per_s.value for cable in rig.cable]),
         )
+        return replace(found, held=-found.unbalanced)
 
     @property
     def cables(self) -> int:
@@ -76,6 +84,19 @@ class Machine:
     def rest_length(self) -> Array:
         """L_0i, lengths with the platform at rest, shape (8,), m."""
         return np.asarray(np.linalg.norm(self.base - self.anchor, axis=1))
+
+    @cached_property
+    def structure(self) -> Array:
+        """Force and moment of unit tensions at rest, shape (6, 8)."""
+        direction = (self.base - self.anchor) / self.rest_length[:, None]
+        return np.hstack([direction, np.cross(self.anchor, direction)]).T
+
+    @property
+    def unbalanced(self) -> Array:
+        """Wrench at rest of pretensions, weight and what holds it, shape (6,), N and N m."""
+        weight = np.array([0.0, 0.0, -self.mass * self.gravity, 0.0, 0.0, 0.0])
+        lever = np.concatenate([np.zeros(3), np.cross(self.drive_arm, self.held[:3])])
+        return np.asarray(self.structure @ self.pretension + weight + self.held + lever)
 
     @property
     def cable_tones_hz(self) -> Array:
@@ -113,12 +134,10 @@ class Machine:
 
     def _per_inertia(self, along_cables: Array) -> Array:
         """Eigenvalues of M^-1 J_A^T c J_A, c a law of each cable along itself, shape (6,)."""
-        direction = (self.base - self.anchor) / self.rest_length[:, None]
-        structure = np.hstack([direction, np.cross(self.anchor, direction)])
         inertia = np.zeros((6, 6))
         inertia[:3, :3] = self.mass * np.eye(3)
         inertia[3:, 3:] = self.inertia
-        whole = structure.T @ (along_cables[:, None] * structure)
+        whole = (self.structure * along_cables) @ self.structure.T
         return np.asarray(np.linalg.eigvals(np.linalg.solve(inertia, whole)).real)
 
     def plant(self) -> Plant:
@@ -132,6 +151,7 @@ class Machine:
             gravity=float(self.gravity),
             inertia=_packed(self.inertia),
             inverse_inertia=_packed(np.linalg.inv(self.inertia)),
+            drive_arm=_packed(self.drive_arm),
             base=_packed(self.base),
             anchor=_packed(self.anchor),
             rest_length=_packed(self.rest_length),

@@ -31,6 +31,8 @@ class Policy:
         their default.
     begins
         Numbers of the state in which each cable begins a run: fitted for each cable and run.
+    aside
+        Magnitudes that are no cause of their own: nuisances move them.
     form_share
         Error of form; None: by the side it acts on.
     """
@@ -38,6 +40,7 @@ class Policy:
     steps: Mapping[str, float] = field(default_factory=dict)
     shapes: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     begins: tuple[str, ...] = ()
+    aside: tuple[str, ...] = ()
     form_share: float | None = None
 
 
@@ -81,7 +84,11 @@ POLICIES: dict[str, Policy] = {
     ),
     "pulley_inertia": Policy(shapes={"grip_s": (2e-3,)}, form_share=LINEAR),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
-    "centre_of_mass": Policy(steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002}),
+    "centre_of_mass": Policy(
+        steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002},
+        shapes={"drive_stays_share": (0.0,)},
+    ),
+    "pretension": Policy(aside=("trimmed_share",)),
     "inertia": Policy(steps={"roll_share": 0.05, "pitch_share": 0.05, "yaw_share": 0.05}),
     "camera_axis": Policy(steps={"axis_roll_deg": 0.5, "axis_pitch_deg": 0.5, "axis_yaw_deg": 0.5}),
     "camera_latency": Policy(steps={"latency_s": 0.003}),
@@ -119,7 +126,7 @@ FAMILIES = (
 WHOLE = ("left_at_rest",)
 """Shapes that are one thing or another."""
 
-BETWEEN = ("bouc_wen_share", "bend", "counted_share")
+BETWEEN = ("bouc_wen_share", "bend", "counted_share", "drive_stays_share")
 """Shapes that lead from one law to another."""
 
 SHARPEST = 3.0
@@ -166,7 +173,9 @@ def candidates(
 
 
 def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
-    magnitudes = [one for one in effect.parameters if one.magnitude]
+    magnitudes = [
+        one for one in effect.parameters if one.magnitude and one.name not in policy.aside
+    ]
     terms = []
     for one in magnitudes:
         step = policy.steps.get(one.name, one.default) or 0.2 * one.high

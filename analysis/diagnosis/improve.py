@@ -1,23 +1,24 @@
 """The improved rig file: the causes switched on, the parameters where the fit has them."""
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.diagnosis.candidates import library_values
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.nuisances import Meaning
 from analysis.engine.diagnosis import Diagnosis
-from analysis.engine.system import Setting
+from analysis.engine.system import Point, Setting
 from cdpr8 import CABLES
 from cdpr8.errors import RigFileError, ToolkitError
 from cdpr8.rigfile import load_rig
 from model.library.discovery import library
 
-MEASUREMENT = ("cell", "camera", "clock")
-"""Nuisances of these are kept out of the rig file: they are within what is known."""
+Array = NDArray[np.float64]
 
 
 def write_improved(machine: RecordedMachine, diagnosis: Diagnosis, path: Path) -> Path:
@@ -104,6 +105,7 @@ def _move(
     rig = machine.recordings[0].rig
     chosen = diagnosis.judgement.chosen
     at = diagnosis.calibrated.rotation @ chosen.weighed.nuisance
+    trim_n = _trim_n(machine, Point(at, chosen.point.effects))
     for sigmas, nuisance, meaning in zip(at, machine.nuisances, machine.meanings, strict=True):
         amount = float(sigmas * nuisance.sigma)
         if meaning.record > 0:
@@ -114,14 +116,28 @@ def _move(
                  row.sigma)  # fmt: skip
         elif meaning.effect in ("pretension", "mass") and not balanced:
             _add(data, meaning, amount)
-        elif meaning.effect == "pretension":
-            row = rig.cable[meaning.cable - 1].pretension_n
-            _set(data["cable"][meaning.cable - 1], "pretension_n", row.value + amount, row.sigma)
+        elif meaning.parameter == "pretension_offset_n":
+            place = meaning.cable - 1
+            row = rig.cable[place].pretension_n
+            tight_n = row.value + amount + float(trim_n[place])
+            _set(data["cable"][place], "pretension_n", tight_n, row.sigma)
         elif meaning.effect == "mass":
             mass = rig.platform.mass_kg
             _set(data["platform"], "mass_kg", mass.value * (1.0 + amount), mass.sigma)
         elif meaning.effect == "drive_amplitude":
             _drive(data, diagnosis, meaning, amount)
+
+
+def _trim_n(machine: RecordedMachine, point: Point) -> Array:
+    """By how much cables are tighter since whoever tightened them trimmed the platform, (8,)."""
+    trims = [i for i, one in enumerate(machine.meanings) if one.parameter == "trimmed_share"]
+    without = point.nuisance.copy()
+    without[trims] = 0.0
+    if not (point.nuisance - without).any():
+        return np.zeros(CABLES)
+    both = (point, replace(point, nuisance=without))
+    trimmed, hanging = (machine.job(one, 0).task.machine.pretension for one in both)
+    return np.asarray(trimmed - hanging)
 
 
 def _add(data: dict[str, Any], meaning: Meaning, amount: float) -> None:

@@ -42,6 +42,10 @@ CAMERA_SHARE = 1e-3
 CAMERA_AXIS_DEG = 0.1
 """How well the camera's pose to the platform's frame is known."""
 
+TRIMMED = 1.0
+"""Of a machine whose numbers are not the rig file's: by how much its pretensions may be those that
+leave it at rest where the rig file has it, 1, or those of the rig file, 0."""
+
 POSE_ZERO_M, POSE_ZERO_RAD = 3e-4, 1e-3
 """How well the plate's place on the platform is known."""
 
@@ -136,6 +140,9 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
                               record=one.run.name),
                      Meaning("pretension", "pretension_offset_n", i, r))
                 )  # fmt: skip
+    found.append(
+        (Nuisance("trim of the pretensions", TRIMMED, "1"), Meaning("pretension", "trimmed_share"))
+    )
     columns = list(zip(*found, strict=True))
     return tuple(columns[0]), tuple(columns[1])
 

@@ -65,7 +65,9 @@ CABLE = _slots(
 )
 """Numbers of one cable, as every law may ask for them; the parameters of the effects follow."""
 
-PLATFORM = _slots({"mass": 1, "gravity": 1, "inertia": 9, "inverse_inertia": 9, "end": 0})
+PLATFORM = _slots(
+    {"mass": 1, "gravity": 1, "inertia": 9, "inverse_inertia": 9, "drive_arm": 3, "end": 0}
+)
 """Slots of the platform's numbers; they follow those of the last cable."""
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.diagnosis.improve import write_improved
 from analysis.diagnosis.nuisances import Meaning
-from analysis.engine.system import Nuisance
+from analysis.engine.system import Nuisance, Point
 from cdpr8.errors import RigFileError
 from cdpr8.rigfile import load_rig, packaged_rig_path
 from model import simulate
@@ -33,7 +33,8 @@ def moved(
         meanings=meanings,
     )
     found = SimpleNamespace(nuisance=np.array([*offsets_n, mass_share, stiffness_share]))
-    judgement = SimpleNamespace(causes=(), chosen=SimpleNamespace(weighed=found))
+    chosen = SimpleNamespace(weighed=found, point=Point(found.nuisance))
+    judgement = SimpleNamespace(causes=(), chosen=chosen)
     diagnosis: Any = SimpleNamespace(
         judgement=judgement, calibrated=SimpleNamespace(rotation=np.eye(len(meanings)))
     )

@@ -46,3 +46,17 @@ def test_a_dashpot_that_had_not_come_to_rest_would_be_seen(rig: Rig) -> None:
     before = task._at_rest
     before[STATES:] = 0.0
     assert moved_n(run(task)) > 1e3 * STILL_N
+
+
+def test_whoever_trimmed_the_platform_left_it_where_the_rig_file_has_it(rig: Rig) -> None:
+    off = [
+        ActiveEffect("mass", {"mass_share": 0.2}),
+        ActiveEffect("centre_of_mass", {"centre_x_m": 0.01}),
+    ]
+    for trimmed in (0.0, 1.0):
+        trim = {"pretension_offset_n": 0.0, "trimmed_share": trimmed}
+        alone = run(Task(rig, QUIET, effects=[*off, ActiveEffect("pretension", trim)], nominal=rig))
+        # The centre of mass itself is where it is.
+        hangs_m = float(np.abs(alone.pose[0, :3]).max())
+        assert moved_n(alone) < STILL_N
+        assert (hangs_m < 1e-8) == bool(trimmed)

@@ -27,7 +27,7 @@ from analysis.challenge.visibility import Metric, look
 from cdpr8.rigfile import Excitation, Rig
 from cdpr8.runfolder import load_run
 from model import simulate as simulate_model
-from model.effects import library
+from model.effects import ActiveEffect, library
 
 SHORT = Excitation(rest_s=0.2, motion_s=1.2, ramp_s=0.3)
 STEP_S = 2.5e-4
@@ -80,6 +80,41 @@ def test_with_nothing_concealed_the_outsider_is_the_model(rig: Rig) -> None:
     tension, angles = at_rows(course, model.t_s[shown])
     assert np.abs(tension - model.tension_n[shown]).max() < 2e-6
     assert np.abs(angles - model.pose[shown, 3:]).max() < 2e-8
+
+
+@pytest.mark.parametrize(("stays", "trimmed"), [(1.0, 1.0), (0.0, 1.0), (1.0, 0.0)])
+def test_a_machine_that_is_off_is_the_model_s_where_its_drive_stays_and_it_was_trimmed(
+    stays: float, trimmed: float
+) -> None:
+    rig, anchor_m = asked(), np.zeros((8, 3))
+    anchor_m[3] = -2e-3, 4e-3, 6e-3
+    off = Offset.none().with_added(
+        centre_m=np.array([0.01, 0.0, -0.02]), mass_share=0.1, anchor_m=anchor_m
+    )
+    course = simulate(rig, off)
+    effects = [
+        ActiveEffect("mass", {"mass_share": 0.1}),
+        ActiveEffect(
+            "centre_of_mass",
+            {
+                "centre_x_m": 0.01,
+                "centre_z_m": -0.02,
+                "centre_y_m": 0.0,
+                "drive_stays_share": stays,
+            },
+        ),
+        ActiveEffect(
+            "geometry",
+            {f"base_{a}_m": 0.0 for a in "xyz"}
+            | {f"anchor_{a}_m": tuple(anchor_m[:, k]) for k, a in enumerate("xyz")},
+        ),
+        ActiveEffect("pretension", {"pretension_offset_n": 0.0, "trimmed_share": trimmed}),
+    ]
+    model = simulate_model(rig, rig.excitation, effects=effects, nominal=rig)
+    shown = model.t_s <= course.t_s[-1]
+    tension, _ = at_rows(course, model.t_s[shown])
+    missed_n = np.abs(tension - model.tension_n[shown]).max()
+    assert missed_n < 1e-5 if stays and trimmed else missed_n > 0.02
 
 
 def test_a_true_machine_hangs_still_until_the_drive_starts() -> None:
