@@ -16,13 +16,11 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
-from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
-from analysis.engine.state import State
 from analysis.engine.system import Array, System
 from analysis.engine.way import STRAIN
 
@@ -32,10 +30,8 @@ WORTH_FOLLOWING = 8.0
 ABREAST, MOST_ABREAST = 12.0, 4
 """Of causes that are faint, so many that are no farther behind the first are led to the phase."""
 
-MOST_OF_IT, BENT = 0.5, 25.0
-"""Where parameters alone went past this share of the time, and lost the ring, those of a kind whose
-squares come to more than this, in sigmas, are led free of what is known of them."""
-
+MOST_OF_IT = 0.5
+"""Where parameters alone lead over this share of the time, bent far, they may be what is off."""
 
 LONG = 0.4
 """Where parameters alone have foretold this share of the time, nothing was left out of that."""
@@ -139,12 +135,14 @@ def by_ring(
         screened, faintly = promised, []
         single = [guessed(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
+    if not near and _is_bent(nothing):
+        led.lead_released()
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)
+    if led.arrived and not led.is_poor:
+        first = []
     if enough is not None:
         led.lead_first(first)
-    if not near and not led.ended:
-        first += _bent(refiner, nothing, at)
     led.follow(first, single, guessed=about.followed.telling < 1.0)
     if led.ended:
         return Found(screened, (), faint=True)
@@ -206,36 +204,9 @@ def _standing(system: System, nuisance: Array) -> Followed:
     return replace(at, misfit=float(found @ found), left=float(np.mean(found**2)))
 
 
-def _bent(refiner: Refiner, nothing: Followed, at: Array) -> list[Guess]:
-    """The parameters that were bent most where alone they went far, free of what is known of them.
-
-    Held to that, they may have taken a wrong turn that only they can be led past, all of a kind.
-
-    Parameters
-    ----------
-    refiner
-        Makes a hypothesis of them.
-    nothing
-        How far parameters alone led.
-    at
-        From where they were led, in sigmas: what is bent begins at nothing there.
-    """
-    if not MOST_OF_IT < nothing.share < 1.0:
-        return []
-    of: dict[str, list[int]] = {}
-    for i, one in enumerate(refiner.system.nuisances):
-        if one.cause in refiner.candidates and one.term is not None:
-            of.setdefault(one.cause, []).append(i)
-    strain = {name: float(np.sum(nothing.nuisance[places] ** 2)) for name, places in of.items()}
-    name = max(strain, key=lambda one: strain[one], default="")
-    if not name or strain[name] < BENT:
-        return []
-    numbers = [(refiner.system.nuisances[i], nothing.nuisance[i]) for i in of[name]]
-    values = {(name, one.term or ""): float(z * one.sigma) for one, z in numbers}
-    hypothesis = Hypothesis({name: Part(tuple(one.term or "" for one, _ in numbers))})
-    state, start = State.at(hypothesis, values, refiner.candidates), at.copy()
-    start[of[name]] = 0.0
-    return [Guess(state, start)]
+def _is_bent(nothing: Followed) -> bool:
+    """Whether parameters alone lead over most of the time, more than a sigma off on average."""
+    return nothing.share > MOST_OF_IT and nothing.strain > len(nothing.nuisance)
 
 
 def _of_one_kind(single: Sequence[Guess]) -> list[Guess]:

@@ -23,6 +23,7 @@ from analysis.engine.leader import EFFORT, POOR
 from analysis.engine.more_leader import FAR_BEHIND, MoreLeader
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
+from analysis.engine.released import released
 from analysis.engine.ring_fit import FAR, follow_ring
 from analysis.engine.sensitivity import Progress
 
@@ -130,12 +131,14 @@ class FollowedSearch(MoreLeader):
             Whether the best is of use.
         """
         kinds = set().union(*(self._kinds(one.names) for one in self._led))
+        left = GUESSES
         for one in self._fresh(others):
-            if len(kinds) > GUESSES or until(self._best):
+            if not left or until(self._best):
                 return
             kind = self._kinds(one.hypothesis.names)
             if not kind & kinds:
                 kinds |= kind
+                left -= 1
                 self._lead(one.nuisance, one.state, near=False)
 
     def _is_farther(self, led: Followed) -> bool:
@@ -174,6 +177,12 @@ class FollowedSearch(MoreLeader):
                 self._lead_rivals(last=True)
             if self._best is best and not self._lead_elsewhere():
                 break
+
+    def lead_released(self) -> None:
+        """Parameters that are off, of all kinds together, where all of them were bent far."""
+        system, candidates = self._system, self._refiner.candidates.values()
+        for one in released(system, self._samples, self._nothing, candidates, self._most_causes):
+            self._keep(one)
 
     def _is_enough(self) -> bool:
         """Whether the best explains to the noise, and that is all that was to be found here."""
