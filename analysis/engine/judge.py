@@ -72,6 +72,11 @@ EVEN_OF_LINES = 15.0
 something else."""
 
 
+MANY, ELSE = 4, 0.5
+"""A cause of which more numbers than this were chosen out of many, such as a dozen coordinates of
+sixteen points, explains whatever is there: it is as likely something else."""
+
+
 @dataclass(frozen=True)
 class Judgement:
     """What the search comes to.
@@ -185,7 +190,10 @@ def judge(
         doubt = doubt_beside(chosen, null, candidates, noise)
     doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
-    causes = tuple(doubted(one, doubt) for one in sure)
+    causes = tuple(
+        doubted(one, doubt + (1.0 - doubt) * _any_would_do(chosen, candidates[one.name]))
+        for one in sure
+    )
     verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)
     return Judgement(verdict, causes, chosen, tuple(float(w) for w in weights), doubt)
 
@@ -202,6 +210,12 @@ def doubt_of(
     form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)
     beyond = max(fitted.left - noise, 0.0) / max(DOUBTFUL * form, SUREST)
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
+
+
+def _any_would_do(chosen: Fitted, candidate: Candidate) -> float:
+    """The probability that a cause was chosen for what it can take up, and not for being there."""
+    picked = bool(candidate.chosen_terms) and chosen.hypothesis.parts[candidate.name].free > MANY
+    return ELSE if picked else 0.0
 
 
 def _among_kin(

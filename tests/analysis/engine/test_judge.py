@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.engine.fitted import Fitted
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.judge import (
     CERTAIN,
     DOUBT_A_CAUSE,
@@ -17,7 +18,7 @@ from analysis.engine.look import look
 from analysis.engine.moved import EVEN, moved_far
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
-from analysis.engine.system import Nuisance
+from analysis.engine.system import Candidate, Nuisance, Term
 from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
 
 CANDIDATES = {one.name: one for one in (DAMPING, STEP)}
@@ -31,8 +32,6 @@ def refiner() -> Refiner:
 
 
 def fitted(refiner: Refiner, state: State | None, score: float, left: float) -> Fitted:
-    from analysis.engine.hypothesis import Hypothesis
-
     there = state or State(Hypothesis(), CANDIDATES, (), np.zeros(0))
     return replace(refiner.at(there, np.zeros(1)), log_score=score, left=left)
 
@@ -51,6 +50,27 @@ def test_what_comes_to_the_noise_is_named(refiner: Refiner) -> None:
     assert said.verdict == "explained"
     assert [one.name for one in said.causes] == ["damping"]
     assert said.causes[0].probability > CERTAIN
+
+
+@pytest.mark.parametrize(("numbers", "verdict"), [(2, "parameter"), (6, "ambiguous")])
+def test_a_dozen_coordinates_would_explain_anything(
+    refiner: Refiner, numbers: int, verdict: str
+) -> None:
+    terms = tuple(Term(f"x@{i}", "x", "m", str(i), -1.0, 1.0, 0.01) for i in range(12))
+    points = Candidate("points", "points", "parameter", terms, chosen_terms=8)
+    known = CANDIDATES | {"points": points}
+    on = Hypothesis({"points": Part(tuple(one.name for one in terms[:numbers]))})
+    sizes = {("points", one.name): 0.05 for one in terms}
+    nothing = fitted(refiner, None, -90.0, 1.2)
+    moved = replace(
+        nothing, hypothesis=on, state=State.at(on, sizes, known), values=sizes,
+        sigmas=dict.fromkeys(sizes, 1e-3), log_score=-10.0, left=1.0,
+    )  # fmt: skip
+    said = judge([moved, nothing], known)
+    assert said.verdict == verdict
+    (cause,) = said.causes
+    assert (cause.probability > CERTAIN) == (verdict == "parameter")
+    assert cause.probability > 0.4
 
 
 def test_recordings_in_which_it_does_not_hold_leave_doubt(refiner: Refiner) -> None:
