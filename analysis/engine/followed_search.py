@@ -180,7 +180,7 @@ class FollowedSearch(MoreLeader):
 
     def lead_released(self) -> None:
         """Parameters that are off, of all kinds together, where all of them were bent far."""
-        system, candidates = self._system, self._refiner.candidates.values()
+        system, candidates = self._system, self._refiner.candidates
         for one in released(system, self._samples, self._nothing, candidates, self._most_causes):
             self._keep(one)
 

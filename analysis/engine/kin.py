@@ -5,9 +5,11 @@ strong, with the same parameters. How much worse it is, is told within a few ste
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.all_samples import cost_of, noise_of
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Part
@@ -69,7 +71,8 @@ def lead_from(
     """Lead a hypothesis that is near another from where that one has come to the end.
 
     What nuisances do there is taken to be what they do here, unless they made up for something
-    there: then it may be far to where they need not.
+    there: then it may be far to where they need not, and it is led by growing windows from the
+    likeliest parameters first.
 
     Parameters
     ----------
@@ -83,11 +86,19 @@ def lead_from(
         And the parameters, in sigmas, shape (p,); None: where the other has come to.
     """
     start = law.nuisance if nuisance is None else nuisance
-    made_up = law.strain > len(law.nuisance)
-    return follow_ring(
-        system, start, state, everything=True, near=True, ahead=law.costs,
-        most=FAR_EFFORT if made_up else EFFORT, lent=None if made_up else law.columns,
-    )  # fmt: skip
+    if not law.strain > len(law.nuisance):
+        return follow_ring(
+            system, start, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
+            lent=law.columns,
+        )  # fmt: skip
+    anew = follow_ring(system, np.zeros_like(start), state, everything=True)
+    if anew.to_end and anew.left < noise_of(system):
+        return anew
+    there = follow_ring(
+        system, start, state, everything=True, near=True, ahead=law.costs, most=FAR_EFFORT
+    )
+    closer = anew if anew.to_end and cost_of(anew) < cost_of(there) else there
+    return replace(closer, effort=anew.effort + there.effort)
 
 
 def kin_of(

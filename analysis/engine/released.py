@@ -7,7 +7,7 @@ a simulation, and so is what any choice of them would leave, were it free: one p
 less or one instead is led, and asked again from there, for straight lines reach no farther.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -36,7 +36,7 @@ def released(
     system: System,
     samples: Samples,
     nothing: Followed,
-    candidates: Iterable[Candidate],
+    candidates: Mapping[str, Candidate],
     most_causes: int,
 ) -> Iterator[Followed]:
     """Hypotheses of parameters that are free of what is known of them, each closer than before.
@@ -48,7 +48,7 @@ def released(
     nothing
         Parameters alone, bent far.
     candidates
-        Those whose every term is a nuisance count; the others are left out.
+        By name; those are asked whose every term is a nuisance.
     most_causes
         Of a hypothesis.
     """
@@ -83,16 +83,16 @@ def released(
 class _Numbers:
     """Terms that are nuisances as well."""
 
-    def __init__(self, system: System, candidates: Iterable[Candidate]) -> None:
+    def __init__(self, system: System, candidates: Mapping[str, Candidate]) -> None:
         same = {(one.cause, one.term) for one in system.nuisances}
         self.candidates = [
             one
-            for one in candidates
+            for one in candidates.values()
             if not one.fixed and all((one.name, term.name) in same for term in one.terms)
         ]
-        self.by_name = {one.name: one for one in self.candidates}
+        self.known = candidates
         self.names = [(one.name, term.name) for one in self.candidates for term in one.terms]
-        bounds = [limits(self.by_name[name], (term,)) for name, term in self.names]
+        bounds = [limits(self.known[name], (term,)) for name, term in self.names]
         self.lows, self.highs = np.array(bounds).reshape(-1, 2).T
 
     def hypothesis(self, chosen: Chosen, like: Followed) -> Hypothesis:
@@ -103,7 +103,7 @@ class _Numbers:
             terms.setdefault(name, []).append(term)
         on = like.point.effects
         shapes = {
-            name: {one.name: one.default for one in self.by_name[name].shapes}
+            name: {one.name: one.default for one in self.known[name].shapes}
             | (dict(on[name].shapes) if name in on else {})
             for name in terms
         }
@@ -112,7 +112,7 @@ class _Numbers:
 
     def score(self, led: Followed) -> float:
         """What speaks for a hypothesis that was led."""
-        prior = 0.0 if led.state is None else led.state.hypothesis.log_prior(self.by_name)
+        prior = 0.0 if led.state is None else led.state.hypothesis.log_prior(self.known)
         return prior - 0.5 * cost_of(led) if led.to_end else -np.inf
 
 
@@ -142,7 +142,7 @@ class _Asked:
         pick, values = list(chosen), self.values(chosen)
         gain = 2.0 * self._right[pick] @ values - values @ self._matrix[np.ix_(pick, pick)] @ values
         hypothesis = self._numbers.hypothesis(chosen, self._led)
-        return float(0.5 * gain) + hypothesis.log_prior(self._numbers.by_name)
+        return float(0.5 * gain) + hypothesis.log_prior(self._numbers.known)
 
     def followed(self, chosen: Chosen) -> Followed:
         """Where straight lines have them."""
@@ -151,7 +151,7 @@ class _Asked:
         magnitudes = {numbers.names[i]: float(v) for i, v in zip(chosen, values, strict=True)}
         at = self._frame.nuisance(self._columns[:, list(chosen)], values)
         moved = self._faint.rotation @ (at - self._faint.problem.at)
-        state = State.at(hypothesis, magnitudes, numbers.by_name)
+        state = State.at(hypothesis, magnitudes, numbers.known)
         return Followed(self._led.nuisance + moved, state)
 
 
