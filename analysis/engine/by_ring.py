@@ -135,12 +135,12 @@ def by_ring(
         screened, faintly = promised, []
         single = [guessed(about, refiner, one) for one in promised]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
-    if not near and _is_bent(nothing):
-        led.lead_released()
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)
-    if led.arrived and not led.is_poor:
-        first = []
+    if not near and _is_bent(nothing):
+        led.lead_first(first[:1])
+        led.lead_released()
+        first = [] if led.arrived and not led.is_poor else first[1:]
     if enough is not None:
         led.lead_first(first)
     led.follow(first, single, guessed=about.followed.telling < 1.0)

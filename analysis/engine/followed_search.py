@@ -177,12 +177,21 @@ class FollowedSearch(MoreLeader):
                 self._lead_rivals(last=True)
             if self._best is best and not self._lead_elsewhere():
                 break
+        for one in self._abreast():
+            self._one_less(one)
 
     def lead_released(self) -> None:
-        """Parameters that are off, of all kinds together, where all of them were bent far."""
+        """Parameters that are off, of all kinds together, where all of them were bent far.
+
+        Unless a cause was led to the end for which they need not be.
+        """
+        best = self._best
+        if self.ended or (best.to_end and best.state and not best.strain > len(best.nuisance)):
+            return
         system, candidates = self._system, self._refiner.candidates
         for one in released(system, self._samples, self._nothing, candidates, self._most_causes):
             self._keep(one)
+        self._most = max(self._most, self._effort + EFFORT)
 
     def _is_enough(self) -> bool:
         """Whether the best explains to the noise, and that is all that was to be found here."""

@@ -83,6 +83,7 @@ class Leader:
         self._exchanged: set[tuple[str, ...]] = set()
         self._placed: set[tuple[object, ...]] = set()
         self._misplaced: set[tuple[str, ...]] = set()
+        self._fewer: list[Followed] = []
         self._everywhere: set[tuple[str, tuple[str, ...]]] = set()
         self._anew: set[tuple[str, ...]] = set()
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))

@@ -32,6 +32,9 @@ GENEROUS = 2.0
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
 
+ABREAST = 6
+"""So many of several causes are led without each of these."""
+
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
 
@@ -129,6 +132,9 @@ class MoreLeader(RivalLeader):
         """Try without one cause, from where one more led to: each may only have shown the way."""
         if whole.state is None or not whole.to_end or len(whole.names) < 2:
             return
+        if any(one is whole for one in self._fewer):
+            return
+        self._fewer.append(whole)
         close = cost_of(whole) + CLOSE
         known = {one.names for one in self._led if one.to_end and cost_of(one) < close}
         for name in whole.names:
@@ -141,6 +147,15 @@ class MoreLeader(RivalLeader):
             if cost_of(fewer) < close:
                 self._lead_kin(fewer)
                 self._one_less(fewer)
+
+    def _abreast(self) -> list[Followed]:
+        """What came about as close as the best with two causes or more, the closest first.
+
+        One of them may have been led with another that only showed the way, and alone to nowhere.
+        """
+        close = cost_of(self._best) + CLOSE
+        both = [one for one in self._led if one.to_end and len(one.names) > 1]
+        return sorted((one for one in both if cost_of(one) < close), key=cost_of)[:ABREAST]
 
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
         """Lead another law in the same places, from where one of its kind has come to."""

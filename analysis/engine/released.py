@@ -28,6 +28,10 @@ from analysis.engine.system import Array, Candidate, System
 ROUNDS, TRIED = 12, 2
 """So often one parameter is exchanged; so many exchanges are led each time until one is closer."""
 
+MUCH = 0.2
+"""And no closer is what takes less than this share of what is left beyond noise: where parameters
+are not what is off, they take up a little of it, one after the other."""
+
 Chosen = tuple[int, ...]
 """Places among the numbers."""
 
@@ -71,7 +75,8 @@ def released(
             start = part_of_the_way(samples, best, far)
             assert start.state is not None
             led = lead_from(system, best, start.state, start.nuisance)
-            if numbers.score(led) > numbers.score(best) + ASKS:
+            beyond = max(cost_of(best) - len(samples.shares), 0.0)
+            if numbers.score(led) > numbers.score(best) + max(ASKS, 0.5 * MUCH * beyond):
                 found = led, other
                 break
         if found is None:
