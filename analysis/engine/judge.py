@@ -31,8 +31,9 @@ that explain it: the more there is, the more their form counts."""
 MOST_AT_NOISE = 20.0
 """But by no more than this, where the best comes to the noise: its form has shown to be right."""
 
-SIMPLER = 0.7
-"""Of laws of one family, each number of shape takes this off the logarithm of odds."""
+SIMPLER, MOST_SHAPES = 0.7, 2
+"""Of laws of one family, each number of shape takes this off the logarithm of odds, up to so many:
+where a hose is tied on makes it no other law."""
 
 NEGLIGIBLE, STANDS_OUT = 0.02, 15.0
 """A magnitude below this share of its usual size is nothing, unless with it the score is so much
@@ -237,7 +238,7 @@ def _among_kin(
                 sum(len(candidates[name].shapes_of(())) for name in fitted[i].hypothesis.names)
                 for i in places
             ]
-            more = np.array(shapes) - min(shapes)
+            more = np.minimum(np.array(shapes) - min(shapes), MOST_SHAPES)
             found[places] = best - (best - scores[places]) / KIN_TEMPER - temper * SIMPLER * more
     return found
 

@@ -5,6 +5,7 @@ import pytest
 
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.kin import lead_from
 from analysis.engine.look import look
 from analysis.engine.moved import freed
 from analysis.engine.refine import Refiner
@@ -58,3 +59,35 @@ def test_parameters_bent_far_beside_a_cause_are_led_as_one_however_much_was_trie
     if best.state is not None and "tone" in names:
         assert best.state.term_values()["tone", "share"] == pytest.approx(off * SIGMA, rel=1e-2)
         assert best.strain < 1.0
+
+
+def test_each_of_what_came_as_close_as_the_best_is_led_alone() -> None:
+    system = Detuned(ring(0.0, RATE, 0.0, 0.0))
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    search = FollowedSearch(refiner, follow_ring(system, np.zeros(1), everything=True), 2)
+    known = {one.name: one for one in system.candidates}
+    both = freed(system, known, beside_damping(system, 3.0), "tone")
+    assert both.state is not None
+    search._keep(lead_from(system, both, both.state))
+    (pair,) = search._abreast()
+    assert pair.names == ("damping", "tone")
+    search._one_less(pair)
+    assert ("damping",) in {one.names for one in search._led}
+    assert search._abreast() == [pair]
+    led = len(search._led)
+    search._one_less(pair)
+    assert len(search._led) == led
+
+
+def test_what_had_made_up_for_something_is_led_from_the_likeliest_parameters() -> None:
+    system = Detuned(ring(OFF * SIGMA, RATE, 0.0, 0.0))
+    bent = beside_damping(system, OFF)
+    assert bent.strain > len(bent.nuisance)
+    known = {one.name: one for one in system.candidates}
+    start = freed(system, known, bent, "tone")
+    assert start.state is not None
+    led = lead_from(system, bent, start.state, np.array([OFF]))
+    assert led.to_end
+    assert abs(float(led.nuisance[0])) < 1.0
+    assert led.left == pytest.approx(1.0, abs=0.1)
