@@ -172,7 +172,8 @@ def kin_left(
     best
         Which hypothesis.
     led
-        All that was led. What was led with what it was lent is led once more.
+        All that was led. What was led with what it was lent is led once more, and so is what bends
+        parameters more than a sigma on average.
     candidates
         By name.
 
@@ -184,7 +185,10 @@ def kin_left(
     done = {
         one.names
         for one in led
-        if one.to_end and not one.borrowed and one.misfit < HOPELESS * best.misfit
+        if one.to_end
+        and not one.borrowed
+        and one.misfit < HOPELESS * best.misfit
+        and not one.strain > len(one.nuisance)
     }
     for known in best.names:
         for name, one in candidates.items():
@@ -246,10 +250,10 @@ def _as_strong(samples: Samples, nuisance: Array, state: State, other: str) -> S
     both = (1.0, -1.0) if signed else (1.0,)
     factors, ratio, best = [sign * one for sign in both for one in STRENGTHS], CLOSER, 1.0
     for _ in range(ROUNDS):
-        tried = [state.smaller(one) for one in factors]
+        tried = [state.smaller(one, other) for one in factors]
         best = factors[_least(samples, nuisance, tried)]
         factors, ratio = [best / ratio, best, best * ratio], ratio**0.5
-    return state.smaller(best)
+    return state.smaller(best, other)
 
 
 def instead(

@@ -157,11 +157,11 @@ class State:
         changed = replace(part, shapes={**part.shapes, shape: value})
         return replace(self, hypothesis=self.hypothesis.plus(name, changed))
 
-    def smaller(self, share: float) -> "State":
-        """With its magnitudes this much of themselves."""
+    def smaller(self, share: float, only: str = "") -> "State":
+        """With magnitudes this much of themselves: of one cause only, or of every one."""
         values = self.values.copy()
         for i in self.free:
-            if self.numbers[i].shape is None:
+            if self.numbers[i].shape is None and only in ("", self.numbers[i].candidate):
                 values[i] *= share
         return replace(self, values=values)
 

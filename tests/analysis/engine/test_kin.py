@@ -101,6 +101,16 @@ def test_part_of_the_way_to_one_cause_more_takes_part_of_each_step_and_of_the_ne
     }
 
 
+def test_how_strong_another_law_is_leaves_what_is_beside_it_alone() -> None:
+    both = Hypothesis(
+        {"dry": Part(("size@1",), False, {"way": 8e-5}), "elsewhere": Part(("size@4",), False, {})}
+    )
+    state = State.at(both, {("dry", "size@1"): 0.6, ("elsewhere", "size@4"): 0.4}, CANDIDATES)
+    less = state.smaller(0.5, "dry").term_values()
+    assert less == {("dry", "size@1"): 0.3, ("elsewhere", "size@4"): 0.4}
+    assert state.smaller(0.5).term_values()["elsewhere", "size@4"] == 0.2
+
+
 class _Bent:
     """What one number does is straight, and what the cause does grows with its cube."""
 
