@@ -197,8 +197,11 @@ def forms_of(
     most = noise_expected(refiner.system.bundles)
     beyond = best.misfit - count * float(np.clip(best.roughness, 1.0, most))
     hidden = max(beyond, 0.0) + DOUBT * np.sqrt(2.0 * count)
+    # A hollow beside the valley leaves so much as well: what explains less of it may be its turn.
+    hollow = beyond - DOUBT * np.sqrt(2.0 * count)
     allowed = count * noise_of(refiner.system)
-    unexplained = UNEXPLAINED * max(min(best.misfit, nothing.misfit) - allowed, 0.0)
+    left = min(best.misfit, nothing.misfit) - allowed
+    unexplained = UNEXPLAINED * max(left, hollow, 0.0)
     found = []
     for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
         off = min((size * form) ** 2 * explained, hidden) + unexplained

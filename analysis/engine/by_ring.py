@@ -122,7 +122,12 @@ def by_ring(
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
         if _is_hollow(system, nothing, faintly):
-            elsewhere = follow_ring(system, elsewhere_than(nothing), everything=True)
+            starts = [elsewhere_than(nothing)]
+            begun = begun_otherwise(system, at)
+            if begun is not None:
+                starts.append(begun.nuisance)
+            others = [follow_ring(system, one, everything=True) for one in starts]
+            elsewhere = min(others, key=cost_of)
             if cost_of(elsewhere) < cost_of(nothing) - WORTH_IT:
                 nothing = elsewhere
                 about = faint(system, nothing, chosen, following)
