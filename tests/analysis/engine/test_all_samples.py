@@ -44,6 +44,24 @@ def test_what_nothing_explains_makes_a_cause_that_explains_little_of_it_less_sur
 
 
 @pytest.mark.parametrize(
+    ("left", "roughness", "names"), [(1.0, 1.0, True), (1.044, 1.0, False), (1.044, 1.044, True)],
+    ids=["beside the noise", "in a hollow", "of a noise that is as rough"],
+)  # fmt: skip
+def test_what_explains_less_than_hollows_leave_names_nothing(
+    monkeypatch: pytest.MonkeyPatch, refiner: Refiner, left: float, roughness: float, names: bool
+) -> None:
+    many = 16 * COUNT
+    monkeypatch.setattr(all_samples, "noise_expected", lambda _: 1.06)
+    law = Followed(
+        np.zeros(1), state_of(DAMPING, 0.01), misfit=left * many, roughness=roughness
+    )  # fmt: skip
+    nothing = replace(law, state=None, misfit=law.misfit + 65.0)
+    scores = {one.hypothesis.names: one.log_score
+              for one in all_samples_say(refiner, [law], nothing, many)}  # fmt: skip
+    assert (scores["damping",] > scores[()] + 10.0) == names
+
+
+@pytest.mark.parametrize(
     ("share", "cost", "alone", "more"),
     [
         (0.1, 150.0, 900.0, True),
