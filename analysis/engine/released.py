@@ -65,9 +65,8 @@ def released(
     for _ in range(ROUNDS):
         asked = _Asked(system, numbers, best)
         now, found = asked.score(chosen), None
-        for score, other in sorted(_exchanges(asked, chosen, most_causes, numbers), reverse=True)[
-            :TRIED
-        ]:
+        exchanges = sorted(_exchanges(asked, chosen, most_causes, numbers), reverse=True)
+        for score, other in exchanges[:TRIED]:
             if score < now + ASKS or other in tried:
                 break
             tried.add(other)
