@@ -43,10 +43,6 @@ TOLD, AS_GOOD = 2, 4.0
 """So many of what lines tell are led on from the first stretch, where they leave no more than so
 many times what the best leaves of it."""
 
-LITTLE = 0.5
-"""What bends parameters by less than this, squared and on average, is not led from halfway back:
-that is where it is."""
-
 SOME = 0.25
 """Of the time: what explains as much, when lines were asked before, is looked at in that alone."""
 
@@ -282,7 +278,7 @@ class FollowedSearch(MoreLeader):
         beyond = valley(self._system, best).led
         if beyond is not best:
             self._keep(beyond)
-        elif best.left > noise_of(self._system) and best.strain > LITTLE * len(best.nuisance):
+        elif best.left > noise_of(self._system):
             start = elsewhere_than(best)
             self._keep(follow_ring(self._system, start, best.state, everything=True))
         return cost_of(self._best) < cost_of(best) - WORTH_IT
