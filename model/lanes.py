@@ -165,6 +165,15 @@ def locate(y: Array, work: Array) -> None:
         work[VELOCITY + k] = y[6 * LANES + k]
 
 
+def turn_of(work: Array, w: int) -> Any:
+    """The rotation of one lane's platform."""
+    return (
+        (work[TURN + w], work[TURN + LANES + w], work[TURN + 2 * LANES + w]),
+        (work[TURN + 3 * LANES + w], work[TURN + 4 * LANES + w], work[TURN + 5 * LANES + w]),
+        (work[TURN + 6 * LANES + w], work[TURN + 7 * LANES + w], work[TURN + 8 * LANES + w]),
+    )
+
+
 def cables_elastic(i: int, y: Array, command: Array, own: Array, work: Array) -> None:
     """Eqs. 9 to 16 for cable i."""
     at, at_rate = (12 + i) * LANES, (12 + CABLES + i) * LANES
@@ -180,11 +189,7 @@ def cables_elastic(i: int, y: Array, command: Array, own: Array, work: Array) ->
             work[ELONGATION + w] = command[WRENCH + i, w * spread]
             work[ELONGATION_RATE + w] = command[WRENCH + CABLES + i, w * spread]
     for w in range(LANES):
-        turn = (
-            (work[TURN + w], work[TURN + LANES + w], work[TURN + 2 * LANES + w]),
-            (work[TURN + 3 * LANES + w], work[TURN + 4 * LANES + w], work[TURN + 5 * LANES + w]),
-            (work[TURN + 6 * LANES + w], work[TURN + 7 * LANES + w], work[TURN + 8 * LANES + w]),
-        )
+        turn = turn_of(work, w)
         base = (own[BASE + w], own[BASE + LANES + w], own[BASE + 2 * LANES + w])
         anchor = (own[ANCHOR + w], own[ANCHOR + LANES + w], own[ANCHOR + 2 * LANES + w])
         position = (
@@ -231,11 +236,7 @@ def cables_elastic(i: int, y: Array, command: Array, own: Array, work: Array) ->
 def weigh(own: Array, work: Array) -> None:
     """The drive's wrench about the centres of mass, and the weight."""
     for w in range(LANES):
-        turn = (
-            (work[TURN + w], work[TURN + LANES + w], work[TURN + 2 * LANES + w]),
-            (work[TURN + 3 * LANES + w], work[TURN + 4 * LANES + w], work[TURN + 5 * LANES + w]),
-            (work[TURN + 6 * LANES + w], work[TURN + 7 * LANES + w], work[TURN + 8 * LANES + w]),
-        )
+        turn = turn_of(work, w)
         arm = (own[DRIVE_ARM + w], own[DRIVE_ARM + LANES + w], own[DRIVE_ARM + 2 * LANES + w])
         pushed = (work[FORCE + w], work[FORCE + LANES + w], work[FORCE + 2 * LANES + w])
         lever = cross(transform(turn, arm), pushed)

@@ -174,7 +174,7 @@ def balance(recording: Recording) -> Balance:
     ends = zip(machine.stiffness, machine.base, machine.anchor, strict=True)
     spring = np.stack([k * lengths(pose, base, anchor) for k, base, anchor in ends])
     return Balance(
-        t_s - t_s[0], cables, platform, along, inner, _structure(machine),
+        t_s - t_s[0], cables, platform, along, inner, machine.structure,
         _harmonics(spring, 1)[:, 0],
     )  # fmt: skip
 
@@ -263,15 +263,9 @@ def _harmonics(rows: Array, count: int) -> Complex:
     return np.asarray(2.0 / rows.shape[1] * np.fft.rfft(rows, axis=1)[:, 1 : count + 1])
 
 
-def _structure(machine: Machine) -> Array:
-    """Wrench of unit tensions at rest, shape (6, 8)."""
-    direction = (machine.base - machine.anchor) / machine.rest_length[:, None]
-    return np.asarray(np.hstack([direction, np.cross(machine.anchor, direction)]).T)
-
-
 def _inner(machine: Machine) -> Array:
     """Two orthonormal sets of tensions that make no wrench at rest, shape (8, 2)."""
-    return np.asarray(np.linalg.svd(_structure(machine))[2][6:].T)
+    return np.asarray(np.linalg.svd(machine.structure)[2][6:].T)
 
 
 def _noise(part: Steady, machine: Machine, noise: Array, inner: Array, count: int) -> Array:
@@ -282,7 +276,7 @@ def _noise(part: Steady, machine: Machine, noise: Array, inner: Array, count: in
     inertia = np.concatenate([np.full(3, machine.mass), np.diag(machine.inertia)])
     faster = (part.circular * np.arange(1, count + 1)) ** 2
     pushed = 2.0 * (inertia * part.axis_noise)[:, None] ** 2 * faster**2
-    return np.vstack([beyond, _structure(machine) ** 2 @ cells + pushed, (inner**2).T @ beyond])
+    return np.vstack([beyond, machine.structure**2 @ cells + pushed, (inner**2).T @ beyond])
 
 
 def _moved(recording: Recording, known: _Known) -> Sequence[_Known]:

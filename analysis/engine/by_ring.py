@@ -142,7 +142,7 @@ def by_ring(
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)
-    if not near and _is_bent(nothing):
+    if not near and _leads_bent(nothing):
         led.lead_first(first[:1])
         led.lead_released()
         first = [] if led.arrived and not led.is_poor else first[1:]
@@ -209,9 +209,9 @@ def _standing(system: System, nuisance: Array) -> Followed:
     return replace(at, misfit=float(found @ found), left=float(np.mean(found**2)))
 
 
-def _is_bent(nothing: Followed) -> bool:
-    """Whether parameters alone lead over most of the time, more than a sigma off on average."""
-    return nothing.share > MOST_OF_IT and nothing.strain > len(nothing.nuisance)
+def _leads_bent(nothing: Followed) -> bool:
+    """Whether parameters alone lead over most of the time, bent."""
+    return nothing.share > MOST_OF_IT and nothing.is_bent
 
 
 def _of_one_kind(single: Sequence[Guess]) -> list[Guess]:

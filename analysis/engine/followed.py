@@ -89,6 +89,11 @@ class Followed:
         return float(self.nuisance @ self.nuisance)
 
     @property
+    def is_bent(self) -> bool:
+        """Whether parameters are more than a sigma off on average: they make up for something."""
+        return self.strain > len(self.nuisance)
+
+    @property
     def to_end(self) -> bool:
         """Whether it was led over all of the time, whatever was left."""
         return self.reached[0] == 1.0

@@ -177,7 +177,7 @@ class FollowedSearch(MoreLeader):
                 self._lead_rivals(last=True)
             if self._best is best and not self._lead_elsewhere():
                 break
-        for one in self._abreast():
+        for one in self._as_close():
             self._one_less(one)
 
     def lead_released(self) -> None:
@@ -186,7 +186,7 @@ class FollowedSearch(MoreLeader):
         Unless a cause was led to the end for which they need not be.
         """
         best = self._best
-        if self.ended or (best.to_end and best.state and not best.strain > len(best.nuisance)):
+        if self.ended or (best.to_end and best.state and not best.is_bent):
             return
         system, candidates = self._system, self._refiner.candidates
         for one in released(system, self._samples, self._nothing, candidates, self._most_causes):

@@ -86,7 +86,7 @@ def lead_from(
         And the parameters, in sigmas, shape (p,); None: where the other has come to.
     """
     start = law.nuisance if nuisance is None else nuisance
-    if not law.strain > len(law.nuisance):
+    if not law.is_bent:
         return follow_ring(
             system, start, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
             lent=law.columns,
@@ -188,7 +188,7 @@ def kin_left(
         if one.to_end
         and not one.borrowed
         and one.misfit < HOPELESS * best.misfit
-        and not one.strain > len(one.nuisance)
+        and not one.is_bent
     }
     for known in best.names:
         for name, one in candidates.items():

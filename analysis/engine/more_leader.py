@@ -32,7 +32,7 @@ GENEROUS = 2.0
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
 
-ABREAST = 6
+AS_CLOSE = 6
 """So many of several causes are led without each of these."""
 
 FAR_BEHIND = 15.0
@@ -148,14 +148,14 @@ class MoreLeader(RivalLeader):
                 self._lead_kin(fewer)
                 self._one_less(fewer)
 
-    def _abreast(self) -> list[Followed]:
+    def _as_close(self) -> list[Followed]:
         """What came about as close as the best with two causes or more, the closest first.
 
         One of them may have been led with another that only showed the way, and alone to nowhere.
         """
         close = cost_of(self._best) + CLOSE
         both = [one for one in self._led if one.to_end and len(one.names) > 1]
-        return sorted((one for one in both if cost_of(one) < close), key=cost_of)[:ABREAST]
+        return sorted((one for one in both if cost_of(one) < close), key=cost_of)[:AS_CLOSE]
 
     def _lead_like(self, law: Followed, scored: Scored, known: Sequence[str]) -> None:
         """Lead another law in the same places, from where one of its kind has come to."""

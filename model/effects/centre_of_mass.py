@@ -35,7 +35,7 @@ def measure(
     centre_x_m: float,
     centre_y_m: float,
     centre_z_m: float,
-    drive_stays_share: float,  # noqa: ARG001
+    drive_stays_share: float,  # noqa: ARG001  # a look is given every number of its effect
 ) -> Any:
     """X + d - R d: a camera sees the point that the rig file takes for the centre of mass."""
     moved = np.array([centre_x_m, centre_y_m, centre_z_m])

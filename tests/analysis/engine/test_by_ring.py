@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.by_ring import _abreast, _is_bent, _is_hollow
+from analysis.engine.by_ring import _abreast, _is_hollow, _leads_bent
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
@@ -30,7 +30,7 @@ class Tuned(LetGo):
 def test_parameters_are_bent_where_they_lead_a_long_way_more_than_a_sigma_off(
     sigmas: float, share: float, bent: bool
 ) -> None:
-    assert _is_bent(replace(Followed(np.array([sigmas]), None), share=share)) == bent
+    assert _leads_bent(replace(Followed(np.array([sigmas]), None), share=share)) == bent
 
 
 @pytest.mark.parametrize(
