@@ -129,9 +129,6 @@ WHOLE = ("left_at_rest",)
 BETWEEN = ("bouc_wen_share", "bend", "counted_share", "drive_stays_share")
 """Shapes that lead from one law to another."""
 
-SHARPEST = 3.0
-"""Presliding this many times shorter than it is screened at is Coulomb's law."""
-
 SATURATION_STEP_N = 0.3
 
 RUN_CODE = 1000.0
@@ -186,7 +183,7 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
         else:
             terms.append(_term(one, step, ""))
     shapes = tuple(
-        Shape(one.name, one.unit, one.default, _lowest(one, policy), one.high,
+        Shape(one.name, one.unit, one.default, one.low, one.high,
               policy.shapes[one.name], logarithmic=one.low > 0.0, whole=one.name in WHOLE,
               between=one.name in BETWEEN)
         for one in effect.parameters
@@ -221,13 +218,6 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
 def _begins(parameter: str, cable: int, record: int, records: int) -> str:
     """What a number of the state is called in which a cable begins a run."""
     return f"{parameter}@{cable}" + (f" in run {record + 1}" if records > 1 else "")
-
-
-def _lowest(parameter: Parameter, policy: Policy) -> float:
-    """Where a shape's range begins: sharper than this is another law, and slow to simulate."""
-    if parameter.name == "presliding_m":
-        return max(parameter.low, min(policy.shapes[parameter.name]) / SHARPEST)
-    return parameter.low
 
 
 def _term(parameter: Parameter, step: float, place: str) -> Term:

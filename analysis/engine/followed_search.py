@@ -13,7 +13,7 @@ from analysis.engine.all_samples import (
 )
 from analysis.engine.cycles import valley
 from analysis.engine.followed import Followed
-from analysis.engine.graduated import graduated
+from analysis.engine.graduated import alike, graduated
 from analysis.engine.guess import Guess
 from analysis.engine.kin import (
     kin_of,
@@ -42,6 +42,10 @@ where the first came no farther than parameters alone."""
 TOLD, AS_GOOD = 2, 4.0
 """So many of what lines tell are led on from the first stretch, where they leave no more than so
 many times what the best leaves of it."""
+
+NEAR = 10.0
+"""What leaves less than this of the first stretch is another law of the same thing, if not its own.
+Where friction all but holds the platform, numbers that are right to a percent leave more."""
 
 SOME = 0.25
 """Of the time: what explains as much, when lines were asked before, is looked at in that alone."""
@@ -237,6 +241,16 @@ class FollowedSearch(MoreLeader):
             self._lead_on(start)
             if self.arrived and not self.is_poor:
                 break
+        begun.sort(key=lambda one: one.left)
+        if begun and begun[0].left < NEAR and not (self._led and self._best.to_end):
+            for start in alike(self._samples, begun[0], self._refiner.candidates):
+                least = min(least, start.left)
+                if start.left > noise_of(self._system) + POOR:
+                    begun.append(start)
+                    continue
+                self._lead_on(start)
+                if self._best.to_end:
+                    break
         self._effort += self._samples.effort - before
         begun.sort(key=lambda one: one.left)
         for start in begun[:TOLD]:

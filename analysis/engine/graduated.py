@@ -7,15 +7,18 @@ have told the numbers to some accuracy: as if that were known far better, sample
 longer stretch, and again with ever less of that (graduated optimization: Blake and Zisserman 1987).
 """
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
+from analysis.engine.kin import begun_instead, kin_left
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import Number
+from analysis.engine.system import Candidate
 from analysis.engine.way import WINDOWS, Way
 
 STRETCH = WINDOWS[2]
@@ -29,6 +32,9 @@ STEPS = 8
 
 FAR_OFF = 100.0, 5.0
 """From here on, what is left has not been seen to fall to less than a fifth."""
+
+HOPS, WORTH_IT = 2, 0.98
+"""Other laws are begun again, up to so many times, where one has left less than such a share."""
 
 STRENGTH, BEGINS = 0.05, 0.06
 """How well lines tell a magnitude, as a share of it, and what a place of it began with, as a share
@@ -62,6 +68,40 @@ def graduated(samples: Samples, guess: Guess, most: float = np.inf) -> Followed:
         if times <= FAR_OFF[0] and at.left > FAR_OFF[1] * most:
             break
     return at
+
+
+def alike(
+    samples: Samples, best: Followed, candidates: Mapping[str, Candidate]
+) -> Iterator[Followed]:
+    """Other laws of the same things, from where one has come to over the first stretch.
+
+    Which law it is, and its numbers of shape, lines tell badly where a ring that sticks and slips
+    does not repeat itself. Where another leaves less, the others are begun from there again.
+
+    Parameters
+    ----------
+    samples
+        By which it is led.
+    best
+        Led over the first stretch.
+    candidates
+        By name.
+
+    Yields
+    ------
+    Followed
+        Each from where the ring is to be followed.
+    """
+    for _ in range(HOPS):
+        here = best
+        for known, other, _ in kin_left(here, (), candidates):
+            state = begun_instead(samples, here, known, other)
+            if state is not None:
+                found = graduated(samples, Guess(state, here.nuisance), most=best.left)
+                yield found
+                best = min(best, found, key=lambda one: one.left)
+        if best.left > WORTH_IT * here.left:
+            break
 
 
 def as_told(guess: Guess) -> Known:

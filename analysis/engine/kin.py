@@ -56,13 +56,30 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
     Followed or None
         None: the other law has no such places.
     """
-    if law.state is None:
+    state = begun_instead(samples, law, known, other)
+    return None if state is None else lead_from(samples.system, law, state)
+
+
+def begun_instead(samples: Samples, law: Followed, known: str, other: str) -> State | None:
+    """Give a state with another law in the place of one, as strong as leaves least of the first.
+
+    Parameters
+    ----------
+    samples
+        By which it is told.
+    law
+        From where that one has come to.
+    known, other
+        The law that is on, and the other.
+
+    Returns
+    -------
+    State or None
+        None: the other law has no such places.
+    """
+    if law.state is None or instead(law.state, known, other) is None:
         return None
-    state = instead(law.state, known, other)
-    if state is None:
-        return None
-    state = _as_strong(samples, law.nuisance, _alike(samples, law, known, other), other)
-    return lead_from(samples.system, law, state)
+    return _as_strong(samples, law.nuisance, _alike(samples, law, known, other), other)
 
 
 def lead_from(

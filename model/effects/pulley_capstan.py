@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent
+from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, LONGEST_STEP_S, bent
 from model.library.effect import Acts, Effect, Parameter, State
 
 
@@ -51,14 +51,14 @@ EFFECT = Effect(
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
     equation="T += T (exp(mu theta (z + t_b z')) - 1) - T_0 (exp(mu theta z_0) - 1), "
-    "z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
+    "z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.5 ms",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",
     parameters=(
         Parameter("friction", "1", 0.03, 0.0, 0.5, "mu", magnitude=True),
         Parameter("wrap_rad", "rad", 1.5708, 0.1, 6.2832, "theta, angle of contact"),
-        Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
+        Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
         BENT_AT_REST,
     ),
@@ -67,6 +67,6 @@ EFFECT = Effect(
     steepest=steepest,
     stiffest=stiffest,
     rates=rates,
-    longest_step_s=1.6e-3,
-    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
+    longest_step_s=LONGEST_STEP_S,
+    cost="a bristle turns over within 0.5 ms at the least; twice the steps",
 )

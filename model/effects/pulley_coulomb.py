@@ -2,7 +2,14 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent, steepest, stiffest
+from model.library.bristle import (
+    BENT_AT_REST,
+    BRISTLE_LOSS,
+    LONGEST_STEP_S,
+    bent,
+    steepest,
+    stiffest,
+)
 from model.library.effect import Acts, Effect, Parameter, State
 
 
@@ -28,14 +35,14 @@ EFFECT = Effect(
     name="pulley_coulomb",
     title="Coulomb friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.25 ms",
+    equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.5 ms",
     source="Coulomb (1785); sticks as by Canudas de Wit et al., IEEE TAC 40 (1995) 419; Olsson et "
     "al., Eur. J. Control 4 (1998) 176",
     signature="step at velocity reversal; odd harmonics as 1/n; quadrature 4 F_c / pi, whatever "
     "the amplitude and the frequency",
     parameters=(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
-        Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
+        Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
         BENT_AT_REST,
     ),
@@ -44,6 +51,6 @@ EFFECT = Effect(
     steepest=steepest,
     stiffest=stiffest,
     rates=rates,
-    longest_step_s=1.6e-3,
-    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
+    longest_step_s=LONGEST_STEP_S,
+    cost="a bristle turns over within 0.5 ms at the least; twice the steps",
 )

@@ -72,7 +72,7 @@ EFFECT = Effect(
     title="presliding friction at the pulley, cable elastic on both sides",
     acts=Acts.PULLEY,
     equation="T += r F_c (z - z_0 + t_b z'), z' = (s' - |s'| z)/sqrt(x_s^2 + (s' t)^2), s' = r v / "
-    "(1 + F_c r (1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 0.25 ms",
+    "(1 + F_c r (1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 0.5 ms",
     source="Dahl, Aerospace Corp. TOR-0158 (1968); Canudas de Wit et al., IEEE TAC 40 (1995) 419",
     signature="rounded reversal; a loop at small amplitude; below x_s it looks like stiffness",
     parameters=(
@@ -88,6 +88,6 @@ EFFECT = Effect(
     rates=rates,
     steepest=steepest,
     stiffest=stiffest,
-    longest_step_s=3.1e-3,
+    longest_step_s=2e-3,
     cost="a bristle that is short and loses much needs steps to suit",
 )

@@ -2,7 +2,14 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent, steepest, stiffest
+from model.library.bristle import (
+    BENT_AT_REST,
+    BRISTLE_LOSS,
+    LONGEST_STEP_S,
+    bent,
+    steepest,
+    stiffest,
+)
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import gaussian
 
@@ -42,7 +49,7 @@ EFFECT = Effect(
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
     equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z/g)/sqrt(x_s^2 + (v t)^2), "
-    "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), t = 0.25 ms",
+    "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), t = 0.5 ms",
     source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
     "Automatica 30 (1994) 1083",
     signature="spike at velocity reversal, negative slope after it; higher odd harmonics than "
@@ -51,7 +58,7 @@ EFFECT = Effect(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
         Parameter("static_ratio", "1", 1.4, 1.0, 3.0, "F_s / F_c"),
         Parameter("stribeck_m_per_s", "m/s", 8e-3, 1e-3, 0.05, "v_st"),
-        Parameter("presliding_m", "m", 5e-5, 2e-5, 2e-4, "x_s, the way to a reversal"),
+        Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
         BENT_AT_REST,
     ),
@@ -60,6 +67,6 @@ EFFECT = Effect(
     steepest=steepest,
     stiffest=stiffest,
     rates=rates,
-    longest_step_s=1.6e-3,
-    cost="a bristle turns over within 0.25 ms at the least; twice the steps",
+    longest_step_s=LONGEST_STEP_S,
+    cost="a bristle turns over within 0.5 ms at the least; twice the steps",
 )

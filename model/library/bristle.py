@@ -12,9 +12,13 @@ from model.library.effect import Parameter
 CREEP_M_PER_S = 2e-7
 """|v| is at least this: in a minute at rest a bristle forgets 12 um of its way."""
 
-CATCHES_S = 2.5e-4
+CATCHES_S = 5e-4
 """However fast the cable slips, its bristles take this long to turn over: steps need not be shorter
 than what the rest of a machine asks for. About a reversal, where cables are slow, it is nothing."""
+
+LONGEST_STEP_S = 3.0 * CATCHES_S
+"""No step is longer: dp5 follows a decay over up to 3.3 of its times, and beyond that a bristle
+grows without bound, however weak the friction."""
 
 BRISTLE_LOSS = Parameter(
     "bristle_loss_s", "s", 5e-4, 0.0, 1e-2, "t_b, loss of the bristle over its stiffness"

@@ -64,6 +64,29 @@ def test_the_default_steps_follow_a_reversal_far_closer_than_a_cell_sees(name: s
     assert float(np.sqrt(np.mean(off**2))) < 1e-3
 
 
+@pytest.mark.parametrize("method", ["dp5", "dop853"])
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_the_shortest_bristle_of_a_weak_friction_is_followed_however_fast_cables_slip(
+    name: str, method: str
+) -> None:
+    rig = load_rig(packaged_rig_path())
+    # Up to 0.3 m/s: it turns over as quickly as it ever does.
+    moved = rig.excitation.model_copy(update={"motion_s": 1.5, "amplitude_deg": 5.0})
+    effect = library()[name]
+    shortest = next(one.low for one in effect.parameters if one.name == "presliding_m")
+    (magnitude,) = (one for one in effect.parameters if one.magnitude)
+    weak = {magnitude.name: [0.03 * magnitude.default] * 8, "presliding_m": shortest}
+    usual, close = (
+        simulate(
+            rig, excitation=moved, effects=[ActiveEffect(name, weak)],
+            output_rate_hz=333.0, method=method, step_s=step_s,
+        )
+        for step_s in (None, 1.5e-4)
+    )  # fmt: skip
+    off = usual.tension_n - close.tension_n
+    assert float(np.sqrt(np.mean(off**2))) < 1e-3
+
+
 @pytest.mark.parametrize("name", FRICTIONS)
 @pytest.mark.parametrize("bent", [-0.6, 0.8])
 def test_what_a_bristle_held_at_rest_is_missing_once_it_has_turned_over(

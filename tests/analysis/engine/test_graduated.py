@@ -1,13 +1,14 @@
 """What sticks begins bent: that is a place's own number, and lines lead to the ring's phase."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
-from analysis.engine.graduated import STRETCH, as_told, graduated
+from analysis.engine.graduated import STRETCH, alike, as_told, graduated
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.ring_fit import follow_ring
@@ -26,12 +27,17 @@ STUCK = Candidate(
 )  # fmt: skip
 
 
+STUCK = replace(STUCK, family="sticking")
+SOFT = replace(STUCK, name="soft", title="a mass that sticks softly")
+BOTH = {"soft": SOFT, "stuck": STUCK}
+
+
 class Sticking:
     """A ring whose tone, size and mean go with what sticks, and with how far that was bent."""
 
     name = "sticking"
     nuisances: Sequence[Nuisance] = (Nuisance("tone", SIGMA, "1"),)
-    candidates: Sequence[Candidate] = (STUCK,)
+    candidates: Sequence[Candidate] = tuple(BOTH.values())
 
     def __init__(self, true: Point) -> None:
         value = self._one(true)
@@ -50,20 +56,22 @@ class Sticking:
         return np.array([TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]))])
 
     def _one(self, point: Point) -> Array:
-        on = point.effects.get("stuck")
+        on, soft = point.effects.get("stuck"), point.effects.get("soft")
+        size = 0.2 if on is None else 0.5
+        on = on or soft
         force = on.values.get("force@1", 0.0) if on else 0.0
         bent = on.shapes.get("bent@1", 0.0) if on else 0.0
         since = np.maximum(T_S - START_S, 0.0)
         hertz = TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]) + 0.3 * force * bent)
         shift = force * (1.0 - bent) * (T_S > START_S)
-        size = 1.0 + 0.5 * force
-        return np.asarray((size * np.sin(2.0 * np.pi * hertz * since) + shift)[:, None])
+        return np.asarray(
+            ((1.0 + size * force) * np.sin(2.0 * np.pi * hertz * since) + shift)[:, None]
+        )
 
 
-def state_of(force: float, bent: float) -> State:
+def state_of(force: float, bent: float, name: str = "stuck") -> State:
     part = Part(("force@1",), shapes={"bent@1": bent, "bent@2": 0.0})
-    hypothesis = Hypothesis({"stuck": part})
-    return State.at(hypothesis, {("stuck", "force@1"): force}, {"stuck": STUCK})
+    return State.at(Hypothesis({name: part}), {(name, "force@1"): force}, BOTH)
 
 
 def test_what_a_place_begins_with_is_free_where_that_place_is_on() -> None:
@@ -98,6 +106,17 @@ def test_numbers_that_lines_tell_are_led_to_the_rings_phase() -> None:
     assert found.left == pytest.approx(1.0, abs=0.2)
     assert found.state is not None
     assert found.state.values == pytest.approx(true.values, abs=0.01)
+
+
+def test_another_law_of_it_is_begun_from_where_the_wrong_one_has_come_to() -> None:
+    true = state_of(0.6, 0.5)
+    samples = Samples(Sticking(true.point(np.array([1.5]))), everything=True)
+    wrong = graduated(samples, Guess(state_of(0.63, 0.47, "soft"), np.zeros(1)))
+    assert wrong.left > 2.0
+    (right,) = (one for one in alike(samples, wrong, BOTH) if one.names == ("stuck",))
+    assert right.left == pytest.approx(1.0, abs=0.2)
+    assert right.state is not None
+    assert right.state.values == pytest.approx(true.values, abs=0.05)
 
 
 def test_what_lines_tell_is_known_to_a_share_and_nuisances_as_before() -> None:
