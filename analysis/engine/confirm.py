@@ -9,13 +9,17 @@ from numpy.typing import NDArray
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.part import Part, records_of, rings
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import EFFORT, follow_ring
 from analysis.engine.search import Search
 from analysis.engine.state import State
 from analysis.engine.system import Array, Bundle, Point, Ring, System
 from analysis.engine.whiten import Whiten
 
 RINGS: tuple[Ring, ...] = ("left_out", "as_is")
+
+NEARLY = 1.2
+"""From where all of the data led, the used part leads in a few steps: none is begun after so many
+simulations for each free number, a little more than all differences take once."""
 
 LEAST_RECORDS = 3
 """From so many recordings on, one is kept back whole but for its rest, unless one is sealed."""
@@ -102,7 +106,9 @@ def _errors(
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
     tried = _tried(nuisance, state)
     if rings(system):
-        led = follow_ring(system, nuisance, state, held=held, near=near)
+        numbers = len(nuisance) + (0 if state is None else len(state.free))
+        most = NEARLY * numbers if near else EFFORT
+        led = follow_ring(system, nuisance, state, held=held, near=near, most=most)
         if near and led.share < 1.0:
             led = follow_ring(system, nuisance, state, held=held)
         tried.append(led.point)

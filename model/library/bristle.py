@@ -16,7 +16,7 @@ CATCHES_S = 5e-4
 """However fast the cable slips, its bristles take this long to turn over: steps need not be shorter
 than what the rest of a machine asks for. About a reversal, where cables are slow, it is nothing."""
 
-LONGEST_STEP_S = 3.0 * CATCHES_S
+LONGEST_STEP_S = 3.1 * CATCHES_S
 """No step is longer: dp5 follows a decay over up to 3.3 of its times, and beyond that a bristle
 grows without bound, however weak the friction."""
 
