@@ -1,6 +1,8 @@
 """The effects that are on, packed as the kernel reads them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from inspect import signature
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,15 +10,15 @@ from numpy.typing import NDArray
 from cdpr8 import CABLES
 from model.kernel import STATES, Extras
 from model.library.discovery import first_parameters, kernel_effects, parameter_rows
-from model.library.effect import Acts, Effect, State
+from model.library.effect import Acts, Effect, Law, State
 from model.library.lanes import CABLE
 from model.library.selection import ActiveEffect
 from model.machine import Machine
 
 Array = NDArray[np.float64]
 
-SMALL = {"m": 1e-6, "N": 1e-3}
-"""Steps of the differences that tell what a state does, by its unit."""
+SMALL_N = 1e-3
+"""Step of the differences that tell what a state does that a rate holds at rest: all are forces."""
 
 
 def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
@@ -43,10 +45,30 @@ def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
     return Extras(on, offset, posts(machine)[0], cable_numbers(machine, effects))
 
 
-def following(extras: Extras | None) -> NDArray[np.int64]:
-    """Places of the states that follow the elongation of each cable, shape (any, 8)."""
-    places = [first for first, _, state in _states(extras) if state.follows]
-    return np.array(places, dtype=np.int64)[:, None] + np.arange(CABLES)
+def resting(
+    extras: Extras | None, effects: Sequence[ActiveEffect], machine: Machine
+) -> list[tuple[NDArray[np.int64], Callable[[Array], Array]]]:
+    """Places of the states that the elongation of their cables tells at rest, and how it does.
+
+    Parameters
+    ----------
+    extras, effects
+        The effects of the plant, packed and as they are.
+    machine
+        The plant.
+    """
+    known = {one.name: one.columns() for one in effects}
+    found: list[tuple[NDArray[np.int64], Callable[[Array], Array]]] = []
+    for first, effect, state in _states(extras):
+        if state.rests is not None:
+            numbers = {**known[effect.name], "stiffness": machine.stiffness}
+            own = {one: numbers[one] for one in signature(state.rests).parameters if one in numbers}
+            found.append((first + np.arange(CABLES), partial(_told, state.rests, own)))
+    return found
+
+
+def _told(law: Law, numbers: Mapping[str, Array], elongation: Array) -> Array:
+    return np.asarray(law(elongation=elongation, **numbers))
 
 
 def held(
@@ -63,7 +85,7 @@ def held(
             own = extras.carrier if state.shared else np.arange(CABLES)
             places += [first + int(one) for one in np.unique(own)]
             by += [first + int(one) + apart for one in np.unique(own)]
-            steps += [SMALL[state.unit]] * len(np.unique(own))
+            steps += [SMALL_N] * len(np.unique(own))
     return np.array(places, dtype=np.int64), np.array(by, dtype=np.int64), np.array(steps)
 
 

@@ -4,13 +4,16 @@ A platform whose mass, pretension or geometry is not quite that of the drive's m
 X* = 0; started there, with no damping of its own, it would ring for the whole of the run.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled
-from model.extras import following, held
+from model.extras import held, resting
 from model.kernel import Extras
 from model.kinematics import cross, rotation, trigonometry
+from model.library.selection import ActiveEffect
 from model.machine import Machine
 
 Array = NDArray[np.float64]
@@ -18,7 +21,7 @@ Array = NDArray[np.float64]
 MOST_ROUNDS = 60
 CLOSE_M = 1e-10
 """Rounds end when the platform moves by less than this. Holds and stops bend, one at each hook: it
-takes a dozen rounds to find which of them are met."""
+takes some rounds to find which of them are met."""
 
 STEP = 1e-6
 """Of the differences of the pose, m and rad."""
@@ -30,7 +33,13 @@ FARTHEST_M = 0.3
 """A platform that would hang farther off than this has no rest worth the name."""
 
 
-def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: int) -> Array:
+def rest_state(
+    machine: Machine,
+    extras: Extras | None,
+    effects: Sequence[ActiveEffect],
+    wrench: Array,
+    states: int,
+) -> Array:
     """The state in which cables, weight and a constant wrench balance.
 
     Parameters
@@ -38,8 +47,10 @@ def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: i
     machine
         The plant.
     extras
-        Effects in the kernel; what they add to tensions at rest counts. What follows the elongation
-        has come to it; other memory is empty.
+        Effects in the kernel; what they add to tensions at rest counts. What the elongation tells
+        at rest has come to that; other memory is empty.
+    effects
+        The same, as they are.
     wrench
         Of the drive at rest, N and N m, shape (6,).
     states
@@ -52,7 +63,7 @@ def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: i
     """
     derivatives, plant = compiled("derivatives"), machine.plant()
     drive = np.append(wrench, np.zeros(machine.cables * 2))
-    follow = following(extras)
+    told = resting(extras, effects, machine)
     places, held_by, steps = held(extras)
     places, held_by = np.append(POSE, places), np.append(POSE + len(POSE), held_by)
     steps = np.append(np.full(len(POSE), STEP), steps)
@@ -61,7 +72,8 @@ def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: i
     for _ in range(MOST_ROUNDS):
         tried = np.tile(found, (len(places) + 1, 1))
         tried[np.arange(1, len(places) + 1), places] += steps
-        tried[:, follow] = _elongation(machine, tried[:, :6])[:, None, :]
+        for there, law in told:
+            tried[:, there] = law(_elongation(machine, tried[:, :6]))
         derivatives(tried, drive, plant, extras, rates)
         left = rates[:, held_by]
         move, *_ = np.linalg.lstsq(((left[1:] - left[0]) / steps[:, None]).T, -left[0])
@@ -71,7 +83,8 @@ def rest_state(machine: Machine, extras: Extras | None, wrench: Array, states: i
         if np.abs(move[POSE]).max() < CLOSE_M:
             if not np.abs(found[POSE]).max() > 10.0 * CLOSE_M:
                 break
-            found[follow] = _elongation(machine, found[None, :6])
+            for there, law in told:
+                found[there] = law(_elongation(machine, found[None, :6])[0])
             return found
     return np.zeros(states)
 

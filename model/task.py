@@ -274,7 +274,7 @@ class Task:
         if self.machine is self.nominal_machine or not self._differs:
             return np.zeros(self.states)
         wrench = resting_wrench(Resting(self.nominal_machine, self.driven))
-        return rest_state(self.machine, self.extras, wrench, self.states)
+        return rest_state(self.machine, self.extras, self.acting, wrench, self.states)
 
     @property
     def _differs(self) -> bool:

@@ -31,6 +31,10 @@ that explain it: the more there is, the more their form counts."""
 MOST_AT_NOISE = 20.0
 """But by no more than this, where the best comes to the noise: its form has shown to be right."""
 
+MOST_OF_STRAIN = 6.0
+"""And by no more than this of what parameters cost that are far from what is known of them: no
+error of form makes that likelier."""
+
 SIMPLER, MOST_SHAPES = 0.7, 2
 """Of laws of one family, each number of shape takes this off the logarithm of odds, up to so many:
 where a hose is tied on makes it no other law."""
@@ -158,6 +162,7 @@ def judge(
         temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
     elif best.left < noise:
         temper = min(temper, MOST_AT_NOISE)
+        scores = _strained(scores, fitted, temper)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
@@ -217,6 +222,12 @@ def _any_would_do(chosen: Fitted, candidate: Candidate) -> float:
     """The probability that a cause was chosen for what it can take up, and not for being there."""
     picked = bool(candidate.chosen_terms) and chosen.hypothesis.parts[candidate.name].free > MANY
     return ELSE if picked else 0.0
+
+
+def _strained(scores: Array, fitted: Sequence[Fitted], temper: float) -> Array:
+    """Scores in which parameters that are bent count for more, where the others count for less."""
+    strain = np.array([0.5 * float(one.point.nuisance @ one.point.nuisance) for one in fitted])
+    return scores - strain * max(temper / MOST_OF_STRAIN - 1.0, 0.0)
 
 
 def _among_kin(

@@ -121,9 +121,14 @@ class MoreLeader(RivalLeader):
         parameters are bent far, they make up for some of it, and this is not asked.
         """
         best, known = self._best, self._refiner.candidates
-        explains = promised_by(found, self._refiner, scored)
+        falls = promised_by(found, self._refiner, scored)
         count = len(self._samples.shares)
+        # What parameters no longer make up for is hidden in no error of form.
+        there = nuisances_of(found, scored)
+        eased = best.strain - float(there @ there)
+        explains = max(falls - eased, 0.0)
         rise = rise_beside_form(self._refiner, best, self._nothing, count, explains)
+        rise += 0.5 * min(eased, falls)
         on = Hypothesis() if best.state is None else best.state.hypothesis
         costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
         return GENEROUS * rise > costs

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import TINY
 
@@ -22,6 +24,13 @@ def rates(
     return (home - hook) / slide_s
 
 
+def rests(play_m: Any, hold_n: Any, elongation: Any, stiffness: Any) -> Any:
+    """Y, the way the hook has slid from the middle of its gap as the machine came to hang there."""
+    held_m = hold_n / stiffness
+    beyond = elongation - np.clip(elongation, -held_m, held_m)
+    return np.clip(beyond, -play_m, play_m)
+
+
 EFFECT = Effect(
     name="anchor_play",
     title="play of the hook at the anchor",
@@ -35,7 +44,7 @@ EFFECT = Effect(
         Parameter("hold_n", "N", 0.5, 0.05, 10.0, "F_h"),
         Parameter("slide_s", "s", 1e-3, 4e-4, 2e-2, "t_h, in which it slides home"),
     ),
-    states=(State("hook", "m", "y, the way the hook has slid", held_by="hook"),),
+    states=(State("hook", "m", "y, the way the hook has slid", rests=rests),),
     pull=pull,
     rates=rates,
     longest_step_s=1.6e-3,

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from model.library.effect import Acts, Effect, Parameter, State
+from model.library.effect import Acts, Effect, Parameter, State, elongated
 
 
 def pull(branch_share: Any, dashpot: Any, elongation: Any, stiffness: Any) -> Any:
@@ -26,7 +26,7 @@ EFFECT = Effect(
         Parameter("branch_share", "1", 0.1, 0.0, 0.5, "k_1 / k", magnitude=True),
         Parameter("relaxation_s", "s", 0.05, 5e-3, 100.0, "tau"),
     ),
-    states=(State("dashpot", "m", "q, elongation of the dashpot", follows=True),),
+    states=(State("dashpot", "m", "q, elongation of the dashpot", rests=elongated),),
     pull=pull,
     rates=rates,
 )

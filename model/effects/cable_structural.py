@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from model.library.effect import Acts, Effect, Parameter, State
+from model.library.effect import Acts, Effect, Parameter, State, elongated
 
 LOWEST_HZ = 0.2
 RATIO = 5.0
@@ -66,7 +66,7 @@ EFFECT = Effect(
         Parameter("decades_below", "1", 0.0, -2.0, 2.0, "D, of loss below 0.2 Hz"),
     ),
     states=tuple(
-        State(f"q{j}", "m", f"elongation of dashpot {j}", follows=True) for j in range(1, 6)
+        State(f"q{j}", "m", f"elongation of dashpot {j}", rests=elongated) for j in range(1, 6)
     ),
     pull=pull,
     rates=rates,

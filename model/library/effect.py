@@ -61,6 +61,11 @@ class Parameter:
     magnitude: bool = False
 
 
+def elongated(elongation: Any) -> Any:
+    """Of a state that follows the elongation of its cable: at rest it has come to it."""
+    return elongation
+
+
 @dataclass(frozen=True)
 class State:
     """One internal state of a plant effect, of each cable.
@@ -73,8 +78,10 @@ class State:
         In a few words.
     shared
         Whether the cables of one post share it; each adds its part to its rate.
-    follows
-        Whether it follows the elongation of its cable: at rest it has come to it.
+    rests
+        What it has come to where the machine hangs, of `elongation` in m, shape (..., 8), of the
+        machine's `stiffness` and of the effect's parameters, shape (8,); None: it stays where it
+        begins, or is held by a rate.
     held_by
         The state whose rate is zero where this one is at rest, which may be its own; "": it stays
         where it begins.
@@ -84,7 +91,7 @@ class State:
     unit: str
     meaning: str
     shared: bool = False
-    follows: bool = False
+    rests: Law | None = None
     held_by: str = ""
 
 
