@@ -195,3 +195,18 @@ def test_numbers_move_too_far_alone_or_together() -> None:
     assert "stiffness" not in moved_far(known, at)
     at[:4] = 2.9
     assert moved_far(known, at)["stiffness"] == pytest.approx(4.34, abs=0.3)
+
+
+@pytest.mark.parametrize(("sigmas", "causes"), [(14.0, ["damping", "step"]), (0.0, ["damping"])])
+def test_an_error_of_form_hides_less_of_what_parameters_are_bent_for(
+    refiner: Refiner, sigmas: float, causes: list[str]
+) -> None:
+    loose = {**CANDIDATES, "damping": replace(DAMPING, form_share=0.3)}
+    alone = fitted(refiner, state_of(DAMPING, 0.2), -160.0, 1.02)
+    alone = replace(alone, point=replace(alone.point, nuisance=np.array([sigmas])))
+    one, other = state_of(DAMPING, 0.2), state_of(STEP, 1.0, moment=4.0)
+    hypothesis = Hypothesis({**one.hypothesis.parts, **other.hypothesis.parts})
+    both = State.at(hypothesis, one.term_values() | other.term_values(), loose)
+    nothing = fitted(refiner, None, -20000.0, 50.0)
+    said = judge([fitted(refiner, both, -80.0, 1.01), alone, nothing], loose)
+    assert sorted(one.name for one in said.causes) == causes
