@@ -97,6 +97,13 @@ class RecordedMachine:
             for one in candidates(effects, times, self.frame_hz)
             if posed or one.side not in ("camera", "clock")
         )
+        slack = sorted({cable for one in recordings for cable in one.hanging})
+        self._candidates = tuple(
+            replace(one, shown=tuple(f"slack_m@{cable}" for cable in slack))
+            if one.name == "cable_slack"
+            else one
+            for one in self._candidates
+        )
         self._workers = workers
         self._crew: Crew[Share, dict[int, Prediction]] = Crew(self, workers)
         self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]

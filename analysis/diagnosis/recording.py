@@ -1,7 +1,7 @@
 """A run as the engine sees it: bundles of channels with times, noise and stretches of time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+
+HANGS_SIGMAS, HANGS_SHARE = 4.0, 0.03
+"""A cable hangs slack where so much of its samples lies within so many sigmas of zero: one whose
+tension only comes to zero and turns is there for less."""
 
 MOST_HZ = 250.0
 """Faster tensions are averaged in blocks down to about this; nothing here is faster than 30 Hz."""
@@ -109,6 +113,16 @@ class Recording:
         return self.run.rig
 
     @property
+    def hanging(self) -> tuple[int, ...]:
+        """Cables that hang slack in a part of the motion: their tension lies at zero, not below."""
+        tensions = (one for one in self.bundles if one.kind == "tension")
+        return tuple(
+            cable
+            for cable, one in zip(self.cables, tensions, strict=True)
+            if _hangs(one.value[:, 0], float(np.sqrt(one.covariance[0, 0])))
+        )
+
+    @property
     def output_hz(self) -> float:
         """Rows a second of a simulation of it."""
         abrupt = self.excitation.ramp_s == 0.0 or self.excitation.ending == "at_once"
@@ -154,7 +168,7 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
     lost = [str(c) for c in range(1, len(run.rig.cable) + 1) if c not in cables]
     if lost:
         notes.append(f"no usable tension of cable {', '.join(lost)}")
-    return Recording(
+    made = Recording(
         run,
         excitation,
         shift_s,
@@ -164,6 +178,20 @@ def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Re
         tuple(notes),
         tuple(averaged_s2 for _, averaged_s2 in read),
     )
+    if made.hanging:
+        slack = ", ".join(str(one) for one in made.hanging)
+        notes.append(
+            f"cable {slack}: its tension lies at zero for part of the time: it hangs slack"
+        )
+    return replace(made, notes=tuple(notes))
+
+
+def _hangs(tension_n: Array, sigma_n: float) -> bool:
+    """Whether a tension that is none at times lies at zero for longer than it takes to pass."""
+    near = HANGS_SIGMAS * sigma_n
+    at_zero, below = np.abs(tension_n) < near, tension_n < -near
+    pulls = float(np.median(tension_n)) > HANGS_SIGMAS * near
+    return pulls and bool(at_zero.mean() > HANGS_SHARE > 10.0 * below.mean())
 
 
 def segments(

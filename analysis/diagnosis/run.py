@@ -26,6 +26,12 @@ NOT_IMPROVED = (
 )
 
 
+SHOWN = (
+    "there is no improved rig file: samples show what is named, and the simulation does not follow "
+    "them with it either"
+)
+
+
 @dataclass(frozen=True)
 class RunDiagnosis:
     """A diagnosis of runs.
@@ -88,7 +94,12 @@ def diagnose_recordings(
     improved = None
     if results is not None:
         results.mkdir(parents=True, exist_ok=True)
-        if diagnosis.judgement is not None and diagnosis.judgement.causes:
+        judgement = diagnosis.judgement
+        if judgement is not None and judgement.shown:
+            # Of an earlier diagnosis, which named what could be followed.
+            (results / "improved.toml").unlink(missing_ok=True)
+            said["notes"].append(SHOWN)
+        elif judgement is not None and judgement.causes:
             try:
                 improved = write_improved(machine, diagnosis, results / "improved.toml")
                 said["improved_rig"] = str(improved)

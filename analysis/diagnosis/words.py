@@ -72,8 +72,7 @@ def headline(said: Statement) -> str:
             "stated uncertainty allows, it removes the mismatch."
         )
     if verdict == "explained":
-        how = "comes nearer" if _far_from_noise(said) else "follows"
-        return f"The simulation left out {names}, and with {_it(causes)} it {how} the recording."
+        return _explained(said, names)
     if verdict == "ambiguous":
         return _ambiguous(causes)
     if verdict == "unexplained":
@@ -103,6 +102,17 @@ def _ambiguous(causes: Sequence[Statement]) -> str:
         "Something was left out, and these runs cannot settle what it is: "
         f"{listed([_set(one) for one in causes], 'and beside it')}."
     )
+
+
+def _explained(said: Statement, names: str) -> str:
+    it = _it(said["causes"])
+    if not _falls(said):
+        return (
+            f"The simulation left out {names}. The samples show it by themselves; the simulation "
+            f"does not follow the recording with {it} either."
+        )
+    how = "comes nearer" if _far_from_noise(said) else "follows"
+    return f"The simulation left out {names}, and with {it} it {how} the recording."
 
 
 def _unexplained(said: Statement) -> str:
@@ -204,8 +214,8 @@ def _improvement(said: Statement) -> list[str]:
     ]
     data = "data that the fit did not use" if part == "held_out" else "the data that were fitted"
     texts = [
-        f"On {data}, the error of the simulation falls {listed(parts)}, in units of the noise "
-        "(1 is noise alone)."
+        f"On {data}, the error of the simulation {'falls' if _falls(said) else 'goes'} "
+        f"{listed(parts)}, in units of the noise (1 is noise alone)."
     ]
     if _far_from_noise(said):
         texts.append(
@@ -213,6 +223,14 @@ def _improvement(said: Statement) -> list[str]:
             "phase and is not held against a law, so more may hide in it."
         )
     return texts
+
+
+def _falls(said: Statement) -> bool:
+    """Whether the simulation misses less of anything with the causes in, or nobody looked."""
+    before, after = said["fit"].get("before", {}), said["fit"].get("after", {})
+    part = "held_out" if before.get("held_out") and after.get("held_out") else "used"
+    kinds = before.get(part, {}).keys() & after.get(part, {}).keys()
+    return not kinds or any(after[part][one] < before[part][one] for one in kinds)
 
 
 def _far_from_noise(said: Statement) -> bool:

@@ -99,6 +99,8 @@ class Judgement:
         Of each fitted hypothesis, in their order.
     doubt
         The probability that it is something else: the best leaves more than noise.
+    shown
+        What is named was not fitted: samples show it, and no simulation could follow them.
     """
 
     verdict: str
@@ -106,6 +108,7 @@ class Judgement:
     chosen: Fitted
     probability: tuple[float, ...]
     doubt: float = 0.0
+    shown: bool = False
 
 
 def judge(
@@ -145,7 +148,10 @@ def judge(
         (score for score, one in zip(scores, fitted, strict=True) if not one.hypothesis.parts),
         default=-np.inf,
     )
-    scores[_idle(fitted, scores, candidates)] = -np.inf
+    shown = {name for one in fitted for name in one.hypothesis.names if candidates[name].shown}
+    shown = shown if lost else set()
+    lacking = [not shown <= set(one.hypothesis.names) for one in fitted]
+    scores[_idle(fitted, scores, candidates) | np.array(lacking)] = -np.inf
     if settled:
         idle = [any(within_sigma(one, name) for name in one.hypothesis.names) for one in fitted]
         scores[idle] = -np.inf
@@ -197,11 +203,15 @@ def judge(
     doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
     causes = tuple(
-        doubted(one, doubt + (1.0 - doubt) * _any_would_do(chosen, candidates[one.name]))
+        one
+        if one.name in shown
+        else doubted(one, doubt + (1.0 - doubt) * _any_would_do(chosen, candidates[one.name]))
         for one in sure
     )
-    verdict = "unexplained" if doubt >= 0.5 else _verdict(causes, candidates)
-    return Judgement(verdict, causes, chosen, tuple(float(w) for w in weights), doubt)
+    verdict = "unexplained" if doubt >= 0.5 and not shown else _verdict(causes, candidates)
+    return Judgement(
+        verdict, causes, chosen, tuple(float(w) for w in weights), doubt, shown=bool(shown)
+    )
 
 
 def doubt_of(
@@ -273,6 +283,8 @@ def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> tuple[str
     """Candidates of a hypothesis that are far below their usual size."""
     found = []
     for name, part in fitted.hypothesis.parts.items():
+        if candidates[name].shown:
+            continue
         steps = {term.name: term.step for term in candidates[name].terms}
         if all(abs(fitted.values[name, t]) < NEGLIGIBLE * abs(steps[t]) for t in part.terms):
             found.append(name)

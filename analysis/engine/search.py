@@ -3,12 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from analysis.engine.all_samples import noise_of
 from analysis.engine.by_ring import Found, Led, Start, by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.guess import Guess
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.more_leader import FAR_BEHIND
@@ -33,6 +36,9 @@ is seen without it."""
 AS_LIKELY, MOST_AS_LIKELY = 0.01, 3
 """Of the laws of what is likeliest by lines so many are led that are this share of what it explains
 behind it."""
+
+LITTLE = 1e-3
+"""Of its step: a cable that hangs slack may have no length to spare."""
 
 REMAINS_ALONE = 0.1
 """Where nothing is on, there is no law that could be a little off: what is so much more than noise
@@ -159,6 +165,10 @@ def _by_lines(
     """By lines, the ring left out; what is found there is led to the phase of the ring, if any."""
     finder = Finder(refiner, _terms(refiner, tell), tell)
     singles = finder.singles(null)
+    shown = _shown(refiner)
+    if led is not None and shown is not None:
+        # What samples show, and could not be followed with that either, lines tell no better.
+        return Found(singles, [shown, *finder.ranked()], faint=False)
     alone = _guesses(finder.ranked())
     if led is not None:
         told = [*_to_follow(refiner, null, led.single, alone), *_as_likely(refiner, null, alone)]
@@ -178,6 +188,24 @@ def _by_lines(
         led.search.follow(_to_follow(refiner, null, (), _guesses(ranked)), alone, seen=True)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
+
+
+def _shown(refiner: Refiner) -> Fitted | None:
+    """What samples show by themselves, as little of it as there can be; None: nothing.
+
+    Parameters are where they are likeliest beforehand: what could not be followed tells none.
+    """
+    parts: dict[str, Part] = {}
+    values: dict[tuple[str, str], float] = {}
+    for name, one in refiner.candidates.items():
+        if one.shown:
+            parts[name] = Part(one.shown, shapes={each.name: each.default for each in one.shapes})
+            values |= {(name, each.name): LITTLE * each.step for each in one.terms}
+    if not parts:
+        return None
+    state = State.at(Hypothesis(parts), values, refiner.candidates)
+    likeliest = np.zeros(len(refiner.system.nuisances))
+    return refiner.at(state, refiner.directions_of(likeliest))
 
 
 def _guesses(ranked: Sequence[Fitted]) -> list[Guess]:

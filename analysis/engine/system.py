@@ -228,6 +228,9 @@ class Candidate:
     grows
         What it does grows as the square of its magnitude: it is screened at the whole of its step,
         for a little of it tells nothing.
+    shown
+        Terms that samples show by themselves, without any simulation: where no simulation can
+        follow them, this is there whatever else is.
     """
 
     name: str
@@ -244,6 +247,7 @@ class Candidate:
     fixed: bool = False
     family: str = ""
     grows: bool = False
+    shown: tuple[str, ...] = ()
 
     def shapes_of(self, terms: Collection[str]) -> tuple[Shape, ...]:
         """Those that count where these terms are on."""

@@ -174,6 +174,18 @@ def test_a_fit_far_from_the_noise_is_not_told_as_if_it_were_good() -> None:
     assert "still well above the noise" in paragraph(statement(fit=fit))
 
 
+def test_a_fit_that_does_not_fall_is_not_told_to_fall() -> None:
+    fit = statement()["fit"]
+    fit["after"] = {
+        part: {kind: 1.1 * value for kind, value in kinds.items()}
+        for part, kinds in fit["before"].items()
+    }
+    told = paragraph(statement(fit=fit))
+    assert "show it by themselves" in told
+    assert "falls" not in told
+    assert "comes nearer" not in told
+
+
 def test_a_set_is_told_as_a_set_with_what_would_split_it() -> None:
     said = statement("ambiguous", [cause(indistinguishable_from=["cable_viscous"], rivals=[RIVAL])])
     assert "viscous damping of the cables (30 %)" in paragraph(said)

@@ -89,3 +89,30 @@ def test_what_is_sampled_just_when_the_motion_starts_is_not_looked_at(run: Run) 
     assert motion.start_s - parts["rest"].end_s == pytest.approx(0.006)
     assert parts["onset"].start_s - motion.start_s == pytest.approx(0.006)
     assert parts["onset"].end_s == parts["steady"].start_s
+
+
+@pytest.mark.parametrize(
+    ("lowest_n", "hangs"),
+    [(2.0, False), (0.0, False), (-4.0, True)],
+    ids=["pulls always", "only just", "slack"],
+)
+def test_a_cable_hangs_slack_where_its_tension_stays_at_zero(
+    run: Run, lowest_n: float, hangs: bool
+) -> None:
+    whole = recording(run, None)
+    assert whole.hanging == ()
+    one = whole.bundles[2]
+    sigma_n = float(np.sqrt(one.covariance[0, 0]))
+    swings = lowest_n + 8.0 * (1.0 + np.sin(2.0 * np.pi * 2.06 * one.t_s))
+    noise = sigma_n * np.random.default_rng(5).standard_normal(swings.shape)
+    looked = replace(one, value=(np.maximum(swings, 0.0) + noise)[:, None])
+    bundles = (*whole.bundles[:2], looked, *whole.bundles[3:])
+    assert replace(whole, bundles=bundles).hanging == ((3,) if hangs else ())
+
+
+def test_a_cell_that_reads_below_zero_shows_no_slack(run: Run) -> None:
+    whole = recording(run, None)
+    one = whole.bundles[2]
+    swings = 4.0 + 8.0 * np.sin(2.0 * np.pi * 2.06 * one.t_s)
+    bundles = (*whole.bundles[:2], replace(one, value=swings[:, None]), *whole.bundles[3:])
+    assert replace(whole, bundles=bundles).hanging == ()

@@ -210,3 +210,16 @@ def test_an_error_of_form_hides_less_of_what_parameters_are_bent_for(
     nothing = fitted(refiner, None, -20000.0, 50.0)
     said = judge([fitted(refiner, both, -80.0, 1.01), alone, nothing], loose)
     assert sorted(one.name for one in said.causes) == causes
+
+
+@pytest.mark.parametrize("lost", [True, False])
+def test_what_samples_show_is_there_where_nothing_can_be_followed(
+    refiner: Refiner, lost: bool
+) -> None:
+    shown = {**CANDIDATES, "step": replace(STEP, shown=("step",))}
+    said = judge(of(refiner, np.nan), shown, lost=lost)
+    assert said.causes[0].name == ("step" if lost else "damping")
+    assert said.shown is lost
+    if lost:
+        assert said.verdict != "unexplained"
+        assert said.causes[0].probability > CERTAIN
