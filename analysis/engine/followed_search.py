@@ -1,6 +1,6 @@
 """Hypotheses led to the ring's phase, each for itself, and what all samples then say of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -227,32 +227,12 @@ class FollowedSearch(MoreLeader):
         What leaves no more of that than noise is led at once: where it arrives, its kin and rivals
         are led from there.
         """
-        begun: list[Followed] = []
-        least, before = np.inf, self._samples.effort
-        for one in self._fresh(guesses):
-            if any(one.state.is_about(at) for at in self._begun):
-                continue
-            self._begun.append(one.state)
-            start = graduated(self._samples, one, most=AS_GOOD * least)
-            least = min(least, start.left)
-            if start.left > noise_of(self._system) + POOR:
-                begun.append(start)
-                continue
-            self._lead_on(start)
-            if self.arrived and not self.is_poor:
-                break
-        begun.sort(key=lambda one: one.left)
+        before = self._samples.effort
+        begun, least = self._begin(self._starts(guesses))
         if begun and begun[0].left < NEAR and not (self._led and self._best.to_end):
-            for start in alike(self._samples, begun[0], self._refiner.candidates):
-                least = min(least, start.left)
-                if start.left > noise_of(self._system) + POOR:
-                    begun.append(start)
-                    continue
-                self._lead_on(start)
-                if self._best.to_end:
-                    break
+            more, closer = self._begin(alike(self._samples, begun[0], self._refiner.candidates))
+            begun, least = sorted([*begun, *more], key=lambda one: one.left), min(least, closer)
         self._effort += self._samples.effort - before
-        begun.sort(key=lambda one: one.left)
         for start in begun[:TOLD]:
             if (self._led and self._best.to_end) or start.left > AS_GOOD * least:
                 break
@@ -260,6 +240,41 @@ class FollowedSearch(MoreLeader):
         # What it takes from here on is spent on what is likely.
         self._most = max(self._most, self._effort + EFFORT)
         self._is_enough()
+
+    def _starts(self, guesses: Sequence[Guess]) -> Iterator[Followed]:
+        """Where what lines tell leads over the first stretch."""
+        least = np.inf
+        for one in self._fresh(guesses):
+            if not any(one.state.is_about(at) for at in self._begun):
+                self._begun.append(one.state)
+                start = graduated(self._samples, one, most=AS_GOOD * least)
+                least = min(least, start.left)
+                yield start
+
+    def _begin(self, starts: Iterable[Followed]) -> tuple[list[Followed], float]:
+        """Lead on what leaves no more than noise of the first stretch, until that arrives.
+
+        Parameters
+        ----------
+        starts
+            Where hypotheses have come to over the first stretch.
+
+        Returns
+        -------
+        list of Followed, float
+            Those that leave more, the least first, and the least that any leaves.
+        """
+        begun: list[Followed] = []
+        least = np.inf
+        for start in starts:
+            least = min(least, start.left)
+            if start.left > noise_of(self._system) + POOR:
+                begun.append(start)
+                continue
+            self._lead_on(start)
+            if self.arrived and not self.is_poor:
+                break
+        return sorted(begun, key=lambda one: one.left), least
 
     def _lead_on(self, start: Followed) -> None:
         """Lead on what was led over the first stretch."""

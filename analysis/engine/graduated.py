@@ -14,7 +14,8 @@ import numpy as np
 
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
-from analysis.engine.kin import begun_instead, kin_left
+from analysis.engine.instead import begun_instead
+from analysis.engine.kin import kin_left
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import Number

@@ -10,7 +10,8 @@ import pytest
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.kin import instead, kin_alike, lead_instead, part_of_the_way
+from analysis.engine.instead import instead
+from analysis.engine.kin import kin_alike, lead_instead, part_of_the_way
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import (
