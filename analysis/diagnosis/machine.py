@@ -27,6 +27,10 @@ Array = NDArray[np.float64]
 Key = tuple[object, ...]
 """Equal where the same is simulated."""
 
+HANGS_NOWHERE = 0.5
+"""Of how likely slack is otherwise: where no tension comes to zero, a cable that is too long is
+rather one that was tightened less: both move alike."""
+
 LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
 
@@ -98,12 +102,7 @@ class RecordedMachine:
             if posed or one.side not in ("camera", "clock")
         )
         slack = sorted({cable for one in recordings for cable in one.hanging})
-        self._candidates = tuple(
-            replace(one, shown=tuple(f"slack_m@{cable}" for cable in slack))
-            if one.name == "cable_slack"
-            else one
-            for one in self._candidates
-        )
+        self._candidates = tuple(_as_seen(one, slack) for one in self._candidates)
         self._workers = workers
         self._crew: Crew[Share, dict[int, Prediction]] = Crew(self, workers)
         self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]
@@ -297,6 +296,14 @@ class RecordedMachine:
                 cables = [int(name.removeprefix("tension ")) - 1 for name in bundle.names]
                 highest[cables] = np.maximum(highest[cables], np.nanmax(bundle.value, axis=0))
         return [float(one) for one in highest]
+
+
+def _as_seen(candidate: Candidate, slack: Sequence[int]) -> Candidate:
+    """A candidate with what samples show of it: cables that hang slack."""
+    if candidate.name != "cable_slack":
+        return candidate
+    shown = tuple(f"slack_m@{cable}" for cable in slack)
+    return replace(candidate, shown=shown, prior=1.0 if slack else HANGS_NOWHERE)
 
 
 def _cut(recording: Recording, upto: float) -> RampedSine | None:

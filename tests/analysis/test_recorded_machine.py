@@ -46,6 +46,21 @@ def test_a_cell_clips_below_the_highest_tension_that_was_simulated_or_recorded(
     assert more.peaks_n[:6] == plain.peaks_n[:6]
 
 
+def test_cables_that_hang_slack_are_shown_by_samples(recorded: Recording) -> None:
+    bundles = tuple(
+        replace(one, value=np.maximum(one.value - np.median(one.value) + 0.5, 0.0))
+        if one.names == ("tension 4",)
+        else one
+        for one in recorded.bundles
+    )
+    slack = replace(recorded, bundles=bundles)
+    (plain,) = RecordedMachine([recorded], ("cable_slack",), workers=1).candidates
+    (hangs,) = RecordedMachine([recorded, slack], ("cable_slack",), workers=1).candidates
+    assert plain.shown == ()
+    assert hangs.shown == ("slack_m@4",)
+    assert plain.prior < hangs.prior
+
+
 def test_where_less_counts_a_machine_is_looked_at_in_less_and_simulated_as_before(
     recorded: Recording,
 ) -> None:
