@@ -95,7 +95,7 @@ POLICIES: dict[str, Policy] = {
     "camera_exposure": Policy(steps={"exposure_s": 0.0625}, form_share=LINEAR),
     "camera_rolling_shutter": Policy(form_share=LINEAR),
     "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
-    "cell_drift": Policy(form_share=LINEAR),
+    "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     "drive_phase": Policy(steps={"late_s": 0.003}),
     "drive_backlash": Policy(form_share=LAW),
     "clock_drift": Policy(steps={"drift_ppm": 200.0}),
