@@ -96,13 +96,12 @@ class RecordedMachine:
             for one in recordings
         ]
         posed = any(one.has_pose for one in recordings)
+        slack = sorted({cable for one in recordings for cable in one.hanging})
         self._candidates = tuple(
-            one
+            _as_seen(one, slack)
             for one in candidates(effects, times, self.frame_hz)
             if posed or one.side not in ("camera", "clock")
         )
-        slack = sorted({cable for one in recordings for cable in one.hanging})
-        self._candidates = tuple(_as_seen(one, slack) for one in self._candidates)
         self._workers = workers
         self._crew: Crew[Share, dict[int, Prediction]] = Crew(self, workers)
         self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]

@@ -27,8 +27,8 @@ NOT_IMPROVED = (
 
 
 SHOWN = (
-    "there is no improved rig file: samples show what is named, and the simulation does not follow "
-    "them with it either"
+    "no improved rig file is written: samples show what is named, and the simulation does not "
+    "follow them with it either"
 )
 
 
@@ -96,8 +96,6 @@ def diagnose_recordings(
         results.mkdir(parents=True, exist_ok=True)
         judgement = diagnosis.judgement
         if judgement is not None and judgement.shown:
-            # Of an earlier diagnosis, which named what could be followed.
-            (results / "improved.toml").unlink(missing_ok=True)
             said["notes"].append(SHOWN)
         elif judgement is not None and judgement.causes:
             try:

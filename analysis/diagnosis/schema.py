@@ -50,6 +50,10 @@ class Remains(Open):
     not_followed: list[str] = Field(
         default=[], description="runs that the causes do not explain; they were not counted"
     )
+    shown: bool = Field(
+        default=False,
+        description="samples show the causes; with these too no simulation follows them",
+    )
     foretold_until_s: float | None = Field(
         default=None, description="what was recorded later was not counted: nothing foretells it"
     )

@@ -60,6 +60,7 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
             "where": where(remains.findings) if remains and remains.significant else None,
             "misfit": None if remains is None else remains.misfit,
             "not_followed": [] if diagnosis.search is None else list(diagnosis.search.aside),
+            "shown": diagnosis.judgement is not None and diagnosis.judgement.shown,
             "foretold_until_s": system.end_s if isinstance(system, Until) else None,
         },
         "fit": _fit(machine, diagnosis.confirmation),

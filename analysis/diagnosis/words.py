@@ -106,12 +106,14 @@ def _ambiguous(causes: Sequence[Statement]) -> str:
 
 def _explained(said: Statement, names: str) -> str:
     it = _it(said["causes"])
-    if not _falls(said):
+    if said["remains"].get("shown"):
         return (
             f"The simulation left out {names}. The samples show it by themselves; the simulation "
             f"does not follow the recording with {it} either."
         )
-    how = "comes nearer" if _far_from_noise(said) else "follows"
+    how = "follows"
+    if _far_from_noise(said):
+        how = "comes nearer" if _falls(said) else "comes no nearer to"
     return f"The simulation left out {names}, and with {it} it {how} the recording."
 
 
@@ -204,7 +206,7 @@ def _improvement(said: Statement) -> list[str]:
             return []
         parts = [f"{value:.3g} for {KINDS.get(kind, kind)}" for kind, value in kinds.items()]
         return [f"What the simulation misses is, in units of the noise, {listed(parts)}."]
-    part = "held_out" if before.get("held_out") and after.get("held_out") else "used"
+    part = _part(said)
     if not before.get(part) or not after.get(part):
         return []
     parts = [
@@ -225,10 +227,16 @@ def _improvement(said: Statement) -> list[str]:
     return texts
 
 
+def _part(said: Statement) -> str:
+    """Of the data, on which before and after are compared."""
+    both = (said["fit"].get(one, {}).get("held_out") for one in ("before", "after"))
+    return "held_out" if all(both) else "used"
+
+
 def _falls(said: Statement) -> bool:
     """Whether the simulation misses less of anything with the causes in, or nobody looked."""
     before, after = said["fit"].get("before", {}), said["fit"].get("after", {})
-    part = "held_out" if before.get("held_out") and after.get("held_out") else "used"
+    part = _part(said)
     kinds = before.get(part, {}).keys() & after.get(part, {}).keys()
     return not kinds or any(after[part][one] < before[part][one] for one in kinds)
 

@@ -106,8 +106,7 @@ def _errors(
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
     tried = _tried(nuisance, state)
     if rings(system):
-        numbers = len(nuisance) + (0 if state is None else len(state.free))
-        most = NEARLY * numbers if near else EFFORT
+        most = NEARLY * len(Followed(nuisance, state).numbers) if near else EFFORT
         led = follow_ring(system, nuisance, state, held=held, near=near, most=most)
         if near and led.share < 1.0:
             led = follow_ring(system, nuisance, state, held=held)

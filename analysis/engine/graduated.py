@@ -34,7 +34,7 @@ STEPS = 8
 FAR_OFF = 100.0, 5.0
 """From here on, what is left has not been seen to fall to less than a fifth."""
 
-HOPS, WORTH_IT = 2, 0.98
+HOPS, CLOSER = 2, 0.98
 """Other laws are begun again, up to so many times, where one has left less than such a share."""
 
 STRENGTH, BEGINS = 0.05, 0.06
@@ -101,7 +101,7 @@ def alike(
                 found = graduated(samples, Guess(state, here.nuisance), most=best.left)
                 yield found
                 best = min(best, found, key=lambda one: one.left)
-        if best.left > WORTH_IT * here.left:
+        if best.left > CLOSER * here.left:
             break
 
 

@@ -181,9 +181,16 @@ def test_a_fit_that_does_not_fall_is_not_told_to_fall() -> None:
         for part, kinds in fit["before"].items()
     }
     told = paragraph(statement(fit=fit))
-    assert "show it by themselves" in told
+    assert "comes no nearer to" in told
     assert "falls" not in told
-    assert "comes nearer" not in told
+    assert "show it by themselves" not in told
+
+
+def test_what_samples_show_is_told_as_that() -> None:
+    said = statement()
+    said["remains"] = {**said["remains"], "shown": True}
+    Statement.model_validate(said)
+    assert "show it by themselves" in paragraph(said)
 
 
 def test_a_set_is_told_as_a_set_with_what_would_split_it() -> None:
