@@ -230,7 +230,11 @@ def derivative(state: Array, drive: Array, plant: Any, extras: Any, rate: Array)
         if extras is not None:
             on = extras.on[i]
             if on & RATED != 0:
-                cable_rates(i, on, line, state, extras.offset, extras.carrier, extras.numbers, rate)
+                across = cable_rates(
+                    i, on, line, state, extras.offset, extras.carrier, extras.numbers, rate
+                )
+                force = add(force, across)
+                moment = add(moment, cross(line.arm, across))
     if extras is not None:
         added_force, added_moment = platform_wrench(
             extras.on[0], state, velocity, omega, extras.offset, extras.numbers

@@ -33,6 +33,8 @@ class Policy:
         Numbers of the state in which each cable begins a run: fitted for each cable and run.
     aside
         Magnitudes that are no cause of their own: nuisances move them.
+    together
+        Whether it is there in all cables or in none.
     form_share
         Error of form; None: by the side it acts on.
     """
@@ -41,6 +43,7 @@ class Policy:
     shapes: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     begins: tuple[str, ...] = ()
     aside: tuple[str, ...] = ()
+    together: bool = False
     form_share: float | None = None
 
 
@@ -70,7 +73,10 @@ POLICIES: dict[str, Policy] = {
     "cable_structural": Policy(form_share=LINEAR, shapes={"decades_below": (0.0,)}),
     "platform_damping": Policy(form_share=LINEAR),
     "cable_modes": Policy(form_share=0.4),
-    "cable_end_forcing": Policy(form_share=0.2),
+    # A string that hangs between a wall and what moves is shaken, whichever cable it is.
+    "cable_end_forcing": Policy(
+        shapes={"reaction_share": (0.0, 1.0)}, together=True, form_share=0.2
+    ),
     "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0), "frame_loss": (0.03,)}),
     "pulley_coulomb": _friction(presliding_m=(5e-5,)),
     "pulley_capstan": _friction(presliding_m=(5e-5,)),
@@ -126,7 +132,7 @@ FAMILIES = (
 WHOLE = ("left_at_rest",)
 """Shapes that are one thing or another."""
 
-BETWEEN = ("bouc_wen_share", "bend", "counted_share", "drive_stays_share")
+BETWEEN = ("bouc_wen_share", "bend", "counted_share", "drive_stays_share", "reaction_share")
 """Shapes that lead from one law to another."""
 
 SATURATION_STEP_N = 0.3
@@ -135,7 +141,7 @@ RUN_CODE = 1000.0
 """Moments are seconds of a run's clock and this many times the run's number; after the last run's
 number comes that of all of them."""
 
-GROWING = ("camera_exposure", "cable_sag")
+GROWING = ("camera_exposure", "cable_sag", "cable_end_forcing")
 """What it does goes with the square of its magnitude."""
 
 
@@ -207,6 +213,7 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
         terms=tuple(terms),
         shapes=shapes,
         form_share=form,
+        together=policy.together,
         shareable=len(magnitudes) == 1,
         combinations=wholes,
         chosen_terms=12 if effect.name == "geometry" else 0,

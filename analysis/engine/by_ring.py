@@ -18,7 +18,7 @@ from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
 from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.system import Array, System
@@ -146,6 +146,8 @@ def by_ring(
         led.lead_first(first[:1])
         led.lead_released()
         first = [] if led.arrived and not led.is_poor else first[1:]
+    if enough is None and _tells_nothing(system, nothing):
+        first, single = [], []
     if enough is not None:
         led.lead_first(first)
     led.follow(first, single, guessed=about.followed.telling < 1.0)
@@ -212,6 +214,18 @@ def _standing(system: System, nuisance: Array) -> Followed:
 def _leads_bent(nothing: Followed) -> bool:
     """Whether parameters alone lead over most of the time, bent."""
     return nothing.share > MOST_OF_IT and nothing.is_bent
+
+
+def _tells_nothing(system: System, nothing: Followed) -> bool:
+    """Whether nothing moves as long as parameters alone foretell what is recorded.
+
+    As where a rest is followed, and the motion is lost as it begins: what the ring promises was
+    told by the rest. Lines tell more.
+    """
+    before = nothing.share - 1.0 / STRETCHES
+    if nothing.reached[0] > 0.0 or before <= 0.0:
+        return False
+    return Samples(system, everything=True, share=before).motion < FAINT
 
 
 def _of_one_kind(single: Sequence[Guess]) -> list[Guess]:

@@ -307,7 +307,7 @@ class FollowedSearch(MoreLeader):
         beyond = valley(self._system, best).led
         if beyond is not best:
             self._keep(beyond)
-        elif best.left > noise_of(self._system):
+        elif self.is_poor:
             start = elsewhere_than(best)
             self._keep(follow_ring(self._system, start, best.state, everything=True))
         return cost_of(self._best) < cost_of(best) - WORTH_IT

@@ -85,6 +85,15 @@ class Samples:
         pairs = zip(self._parts, prediction, strict=True)
         return np.concatenate([part.residual(found).reshape(-1) for part, found in pairs])
 
+    @property
+    def motion(self) -> float:
+        """Squared deviation of a sample from its channel's mean, in units of noise, on average."""
+        means = [
+            np.broadcast_to(one.value[chosen].mean(axis=0), one.value.shape)
+            for one, chosen in zip(self.system.bundles, self._mask, strict=True)
+        ]
+        return float(np.mean(self._residual(means) ** 2))
+
     def parts(self, residual: Array) -> Iterator[tuple[Array, Array]]:
         """Times, shape (k,), and residuals, shape (k, m), of one bundle after the other.
 

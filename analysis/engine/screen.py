@@ -167,6 +167,8 @@ class Screen:
 
         every = range(len(names))
         if candidate.together or len(names) == 1:
+            if candidate.shareable and len(names) > 1:
+                yield names, True, gain(list(every), True)
             yield names, False, gain(list(every), False)
             return
         # One by one, the best next, each with its own value.

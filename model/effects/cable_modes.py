@@ -37,7 +37,7 @@ def rates(
     anchor_velocity_y: Any,
     anchor_velocity_z: Any,
 ) -> Any:
-    """Eq. 17 with n pi for pi; the rates are those of the cable, not of the moving line."""
+    """Eq. 17 with n pi for pi; the rates are those of the cable, its loss is of its line's."""
     along = (
         direction_x * anchor_velocity_x
         + direction_y * anchor_velocity_y
@@ -49,15 +49,17 @@ def rates(
     horizontal = FIRST_MODE * sideways
     wave = tension / line_density - axial_velocity * axial_velocity
     square = PI_SQUARED / (length * length) * wave
+    v2_speed, v3_speed = v2_rate + vertical / 2.0, v3_rate - vertical / 3.0
+    h1_speed, h2_speed = h1_rate - horizontal, h2_rate + horizontal / 2.0
     return (
-        v2_rate + vertical / 2.0,
-        v3_rate - vertical / 3.0,
-        h1_rate - horizontal,
-        h2_rate + horizontal / 2.0,
-        -damping * v2_rate - 4.0 * square * v2,
-        -damping * v3_rate - 9.0 * square * v3,
-        -damping * h1_rate - square * h1,
-        -damping * h2_rate - 4.0 * square * h2,
+        v2_speed,
+        v3_speed,
+        h1_speed,
+        h2_speed,
+        -damping * v2_speed - 4.0 * square * v2,
+        -damping * v3_speed - 9.0 * square * v3,
+        -damping * h1_speed - square * h1,
+        -damping * h2_speed - 4.0 * square * h2,
     )
 
 

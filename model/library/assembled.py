@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from model.kinematics import Vector
 from model.library import assembly
 
 TEXT = assembly.text()
@@ -17,7 +18,7 @@ _functions: dict[str, Any] = {
 exec(compile(TEXT, "<laws of model.effects>", "exec"), _functions)
 
 cable_pull: Callable[..., tuple[float, float]] = _functions["cable_pull"]
-cable_rates: Callable[..., None] = _functions["cable_rates"]
+cable_rates: Callable[..., Vector] = _functions["cable_rates"]
 platform_wrench: Callable[..., Any] = _functions["platform_wrench"]
 lane_pull: Callable[..., None] = _functions["lane_pull"]
 lane_rates: Callable[..., None] = _functions["lane_rates"]

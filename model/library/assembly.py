@@ -23,7 +23,7 @@ def laws() -> dict[str, Law]:
     return {
         _called(effect, hook): law
         for effect in kernel_effects()
-        for hook in ("pull", "behind", "rates", "transverse", "wrench")
+        for hook in ("pull", "behind", "rates", "transverse", "across", "wrench")
         if (law := getattr(effect, hook)) is not None
     }
 
@@ -88,12 +88,12 @@ def _own(effect: Effect, name: str) -> tuple[str, int] | None:
 
 
 def rated() -> int:
-    """Bits of the effects that have states, or shake their cable."""
-    return sum(
-        1 << number
-        for number, effect in _cable_effects()
-        if effect.rates is not None or effect.transverse is not None
-    )
+    """Bits of the effects that have states, shake their cable, or pull across it."""
+    return sum(1 << number for number, effect in _cable_effects() if _has_rates(effect))
+
+
+def _has_rates(effect: Effect) -> bool:
+    return any(law is not None for law in (effect.rates, effect.transverse, effect.across))
 
 
 def _scalar_find(effect: Effect, number: int) -> Find:
@@ -139,20 +139,25 @@ def _scalar_pull() -> list[str]:
 def _scalar_rates() -> list[str]:
     lines = [
         "def cable_rates(i, on, line, state, offset, carrier, numbers, rate):",
+        "    f0, f1, f2 = 0.0, 0.0, 0.0",
     ]
     for number, effect in _cable_effects():
         find = _scalar_find(effect, number)
-        if effect.rates is None and effect.transverse is None:
+        if not _has_rates(effect):
             continue
         lines.append(_switch(number))
         if effect.transverse is not None:
-            lines.append(f"        rate[12 + i] += {_call(effect, 'transverse', find)}")
+            lines.append(f"        r0, r1 = {_call(effect, 'transverse', find)}")
+            lines += [f"        rate[{12 + k * CABLES} + i] += r{k}" for k in range(2)]
         if effect.rates is not None:
             lines.append(f"        {_received(effect)} = {_call(effect, 'rates', find)}")
             for which in range(len(effect.states)):
                 place = _scalar_state(effect, number, which)
                 lines.append(f"        rate[{place}] += r{which}")
-    return [*lines, "    return"]
+        if effect.across is not None:
+            lines.append(f"        a0, a1, a2 = {_call(effect, 'across', find)}")
+            lines += [f"        f{k} += a{k}" for k in range(3)]
+    return [*lines, "    return f0, f1, f2"]
 
 
 def _received(effect: Effect) -> str:
@@ -236,20 +241,39 @@ def _lane_pull() -> list[str]:
 def _lane_rates() -> list[str]:
     lines = ["def lane_rates(i, on, offset, carrier, own, y, work, f):"]
     for number, effect in _cable_effects():
-        if effect.rates is None and effect.transverse is None:
+        if not _has_rates(effect):
             continue
         find = _lane_find(effect)
         lines += [_switch(number), *_lane_states(effect, number, True)]
         if effect.transverse is not None:
-            lines.append(f"        at = (12 + i) * {LANES}")
-            lines.append(f"        mid_span = f[at : at + {LANES}]")
+            for k in range(2):
+                lines.append(f"        at = ({12 + k * CABLES} + i) * {LANES}")
+                lines.append(f"        m{k} = f[at : at + {LANES}]")
         lines.append(f"        for w in range({LANES}):")
         if effect.transverse is not None:
-            lines.append(f"            mid_span[w] += {_call(effect, 'transverse', find)}")
+            lines.append(f"            r0, r1 = {_call(effect, 'transverse', find)}")
+            lines += [f"            m{k}[w] += r{k}" for k in range(2)]
         if effect.rates is not None:
             lines.append(f"            {_received(effect)} = {_call(effect, 'rates', find)}")
             lines += [f"            d{k}[w] += r{k}" for k in range(len(effect.states))]
+        if effect.across is not None:
+            lines += _lane_across(effect, find)
     return [*lines, "    return"]
+
+
+def _lane_across(effect: Effect, find: Find) -> list[str]:
+    force, moment = WORK["force"], WORK["moment"]
+    arm = [f"work[{(WORK['arm'] + k) * LANES} + w]" for k in range(3)]
+    lines = [
+        f"        for w in range({LANES}):",
+        f"            a0, a1, a2 = {_call(effect, 'across', find)}",
+    ]
+    lines += [f"            work[{(force + k) * LANES} + w] += a{k}" for k in range(3)]
+    for k in range(3):
+        one, other = (k + 1) % 3, (k + 2) % 3
+        lever = f"{arm[one]} * a{other} - {arm[other]} * a{one}"
+        lines.append(f"            work[{(moment + k) * LANES} + w] += {lever}")
+    return lines
 
 
 def _lane_wrench() -> list[str]:

@@ -17,6 +17,7 @@ CABLE: Mapping[str, tuple[str, str]] = {
     "anchor_velocity_y": ("of the anchor in O-XYZ, m/s", "line.anchor_velocity[1]"),
     "anchor_velocity_z": ("of the anchor in O-XYZ, m/s", "line.anchor_velocity[2]"),
     "elastic": ("T_i of Eq. 16, N", "line.elastic"),
+    "mid_span": ("X_w of Eq. 15, m", "state[12 + i]"),
     "tension": ("the tension at the anchor with all effects, N; not in `pull`", "line.pull"),
 }
 """For laws of cables and pulleys: meaning, and the expression of the scalar kernel."""

@@ -125,7 +125,9 @@ class Effect:
     rates
         Plant: the rates of the states: one value, or a tuple in their order.
     transverse
-        Plant: adds to X_w', m/s.
+        Plant: adds to X_w' and X_w'', m/s and m/s2.
+    across
+        Plant: adds a force on the platform at a cable's anchor, N, a tuple of three in O-XYZ.
     wrench
         Plant: adds force and moment on the platform, a tuple of six.
     change
@@ -161,6 +163,7 @@ class Effect:
     behind: Law | None = None
     rates: Law | None = None
     transverse: Law | None = None
+    across: Law | None = None
     wrench: Law | None = None
     change: Law | None = None
     command: Law | None = None
