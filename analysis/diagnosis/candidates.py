@@ -88,7 +88,10 @@ POLICIES: dict[str, Policy] = {
     "umbilical": Policy(
         shapes={"loss_s": (5e-3,), "at_x_m": (0.0,), "at_y_m": (0.0,), "at_z_m": (0.0,)}
     ),
-    "pulley_inertia": Policy(shapes={"grip_s": (2e-3,)}, form_share=LINEAR),
+    "pulley_inertia": Policy(
+        shapes={"grip_s": (2e-3,), "bearing_per_s": (0.0, 50.0)},
+        form_share=LINEAR,
+    ),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
     "centre_of_mass": Policy(
         steps={"centre_x_m": 0.002, "centre_y_m": 0.002, "centre_z_m": 0.002},

@@ -117,6 +117,9 @@ def by_ring(
     at = refiner.calibrated.at if start is None else start.nuisance
     nothing = _nothing(system, at)
     near = nothing.left < FAINT and nothing.about is None
+    if enough is None and _tells_nothing(system, nothing):
+        led = FollowedSearch(refiner, nothing, most_causes, following)
+        return Found((), (), faint=False, led=Led(led, []))
     chosen = [one for one in system.candidates if not one.fixed]
     about = faint(system, nothing, chosen, following)
     if near:
@@ -146,8 +149,6 @@ def by_ring(
         led.lead_first(first[:1])
         led.lead_released()
         first = [] if led.arrived and not led.is_poor else first[1:]
-    if enough is None and _tells_nothing(system, nothing):
-        first, single = [], []
     if enough is not None:
         led.lead_first(first)
     led.follow(first, single, guessed=about.followed.telling < 1.0)

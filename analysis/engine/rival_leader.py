@@ -52,11 +52,14 @@ class RivalLeader(Leader):
         one, other = (self._refiner.candidates[name].family for (name,) in names)
         return bool(one) and one == other
 
+    def _lead_through(self) -> None:
+        """The best, led with what others do about itself where that was lent by another."""
+        best = self._best
+        if best.borrowed:
+            self._led = [through(self._system, one) if one is best else one for one in self._led]
+
     def _lead_kin(self, best: Followed) -> None:
         """From where a hypothesis was led to the end, other laws of each of its kinds are led."""
-        if best.borrowed and best is self._best:
-            self._led = [through(self._system, one) if one is best else one for one in self._led]
-            best = self._best
         if best.state is None or not best.to_end:
             return
         for known, name, names in kin_left(best, self._in_place, self._refiner.candidates):
@@ -173,7 +176,9 @@ class RivalLeader(Leader):
         """
         candidates = self._refiner.candidates
         for _ in range(EXCHANGES):
+            self._lead_through()
             self._lead_placed()
+            self._lead_through()
             self._lead_kin(self._best)
             self._lead_everywhere()
             plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)

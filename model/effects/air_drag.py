@@ -52,7 +52,7 @@ EFFECT = Effect(
     source="Newton; Hoerner, Fluid-Dynamic Drag (1965); of faces at an arm a, to lowest order",
     signature="quadrature as the square of the amplitude, 3rd harmonic; decay as 1/A",
     parameters=(
-        Parameter("drag_area_m2", "m2", 0.05, 0.0, 1.0, "C_d A", False, True),
+        Parameter("drag_area_m2", "m2", 0.05, 0.0, 2.0, "C_d A", False, True),
         Parameter("turning_n_m_s2", "N m s2", 1e-3, 0.0, 0.1, "c", False, True),
         Parameter("arm_m", "m", 0.15, 0.03, 1.0, "a, of the faces from the centre", False),
     ),

@@ -38,9 +38,9 @@ EFFECT = Effect(
         Parameter("base_x_m", "m", 5e-3, -0.1, 0.1, "b along X", True, True),
         Parameter("base_y_m", "m", 0.0, -0.1, 0.1, "b along Y", True, True),
         Parameter("base_z_m", "m", 0.0, -0.1, 0.1, "b along Z", True, True),
-        Parameter("anchor_x_m", "m", 0.0, -0.02, 0.02, "a along X", True, True),
-        Parameter("anchor_y_m", "m", 0.0, -0.02, 0.02, "a along Y", True, True),
-        Parameter("anchor_z_m", "m", 0.0, -0.02, 0.02, "a along Z", True, True),
+        Parameter("anchor_x_m", "m", 0.0, -0.05, 0.05, "a along X", True, True),
+        Parameter("anchor_y_m", "m", 0.0, -0.05, 0.05, "a along Y", True, True),
+        Parameter("anchor_z_m", "m", 0.0, -0.05, 0.05, "a along Z", True, True),
     ),
     change=change,
 )

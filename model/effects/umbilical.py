@@ -46,7 +46,7 @@ EFFECT = Effect(
     source="linear spring with a Kelvin-Voigt loss",
     signature="in phase in the wrench balance, not in the cables' own law",
     parameters=(
-        Parameter("spring_n_per_m", "N/m", 10.0, 0.0, 500.0, "k_u", False, True),
+        Parameter("spring_n_per_m", "N/m", 10.0, 0.0, 1000.0, "k_u", False, True),
         Parameter("turning_n_m_per_rad", "N m/rad", 0.1, 0.0, 10.0, "k_r", False, True),
         Parameter("loss_s", "s", 5e-3, 0.0, 0.05, "tau", False),
         Parameter("at_x_m", "m", 0.0, -0.3, 0.3, "a_x", False),

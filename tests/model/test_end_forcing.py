@@ -21,7 +21,11 @@ def known(random: np.random.Generator) -> dict:
     vectors = {"direction": DIRECTION, "anchor_velocity": velocity}
     names = [f"{plane}{n}" for plane, modes in PLANES.items() for n in modes]
     return (
-        {f"{name}_{axis}": v for name, one in vectors.items() for axis, v in zip("xyz", one)}
+        {
+            f"{name}_{axis}": v
+            for name, one in vectors.items()
+            for axis, v in zip("xyz", one, strict=True)
+        }
         | {name: 1e-3 * random.normal() for name in names}
         | {f"{name}_rate": 0.1 * random.normal() for name in names}
         | {"tension": TENSION_N, "length": LENGTH_M, "line_density": DENSITY}
