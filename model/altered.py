@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled
-from model.loops import STEEPNESS
 from model.motion import Command, Motion, RampedSine
 
 Array = NDArray[np.float64]
@@ -95,6 +94,23 @@ class Altered(_Imperfect):
         return self.start_s + (inner_s - self.motion.start_s) / self.pace
 
 
+def retuned(motion: Motion, factor: float) -> Motion:
+    """A motion whose sine has another frequency, while its ramps keep their times.
+
+    Parameters
+    ----------
+    motion
+        As commanded; one that is no sine runs faster as a whole.
+    factor
+        On the frequency.
+    """
+    if isinstance(motion, RampedSine):
+        return replace(motion, frequency_hz=factor * motion.frequency_hz)
+    if isinstance(motion, Altered | Distorted | Loose):
+        return replace(motion, motion=retuned(motion.motion, factor))
+    return Altered(motion, pace=factor)
+
+
 @dataclass(frozen=True)
 class Distorted(_Imperfect):
     """A sine with one harmonic.
@@ -155,42 +171,44 @@ class Loose(_Imperfect):
         As commanded.
     play_rad
         Half the play, d.
+    servo_s
+        Standard deviation of the Gaussian by which a servo smooths what play takes away.
     """
 
     play_rad: float
+    servo_s: float
 
     def at(self, time_s: Array, within_s: Array | None = None) -> Command:
         """X*, X*' and X*''; see `Motion.at`."""
-        pose, rate, acceleration = (values.copy() for values in self.motion.at(time_s, within_s))
+        told = tuple(values.copy() for values in self.motion.at(time_s, within_s))
         if self.play_rad == 0.0:
-            return pose, rate, acceleration
-        lag = np.zeros_like(pose)
-        for axis, (grid_s, values) in enumerate(_followed(self), start=3):
-            lag[..., axis] = np.interp(time_s, grid_s, values)
-        way = np.sign(rate)
-        near = np.maximum(way * lag / self.play_rad, 0.0)
-        free = 1.0 - near**STEEPNESS
-        near_rate = way * rate * free / self.play_rad
-        free_rate = -STEEPNESS * near ** (STEEPNESS - 1) * near_rate
-        angles = slice(3, 6)
-        pose[..., angles] -= lag[..., angles]
-        acceleration[..., angles] -= (acceleration * free + rate * free_rate)[..., angles]
-        rate[..., angles] -= (rate * free)[..., angles]
-        return pose, rate, acceleration
+            return told[0], told[1], told[2]
+        grid_s, lags = _followed(self)
+        for values, lag in zip(told, lags, strict=True):
+            for axis in range(3):
+                values[..., 3 + axis] -= np.interp(time_s, grid_s, lag[:, axis])
+        return told[0], told[1], told[2]
 
 
 @lru_cache(maxsize=4)
-def _followed(loose: Loose) -> tuple[tuple[Array, Array], ...]:
-    """The lag z of each angle on the grid."""
+def _followed(loose: Loose) -> tuple[Array, tuple[Array, Array, Array]]:
+    """A grid of times, and on it the lag of each angle, its rate and its acceleration."""
+    from scipy.ndimage import gaussian_filter1d
+
     grid_s = np.arange(int(loose.duration_s * GRID_HZ) + 2) / GRID_HZ
     angles = loose.motion.at(grid_s)[0][:, 3:]
-    return tuple((grid_s, _play(angles[:, axis], loose.play_rad)) for axis in range(3))
+    lag = np.stack([_play(angles[:, axis], loose.play_rad) for axis in range(3)], axis=1)
+    sigma = loose.servo_s * GRID_HZ
+    value, rate, acceleration = (
+        gaussian_filter1d(lag, sigma, axis=0, order=order, mode="nearest") * GRID_HZ**order
+        for order in range(3)
+    )
+    return grid_s, (value, rate, acceleration)
 
 
 def _play(values: Array, play: float) -> Array:
-    """Follow z: it moves with the value, and less and less as it nears the stop at +-d."""
+    """What values with play to either side lag by: they stand until the other stop is reached."""
     lag = np.zeros_like(values)
-    if not np.any(values):
-        return lag
-    compiled("follow_play")(np.diff(values), play, lag)
+    if np.any(values):
+        compiled("follow_play")(np.diff(values), play, lag)
     return lag

@@ -5,9 +5,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-STEEPNESS = 4
-"""How sharply the stop of a play is met."""
-
 
 def between_rows(time_s: Array, values: Array, read_s: Array, seen: Array) -> None:
     """Cubics through the four rows about each time; before and after the rows, their ends.
@@ -42,7 +39,7 @@ def between_rows(time_s: Array, values: Array, read_s: Array, seen: Array) -> No
 
 
 def follow_play(changes: Array, play: float, lag: Array) -> None:
-    """What a value with play to either side lags by: less and less as it nears its stop.
+    """What a value with play to either side lags by: it stands until the other stop is reached.
 
     Parameters
     ----------
@@ -55,10 +52,5 @@ def follow_play(changes: Array, play: float, lag: Array) -> None:
     """
     z = 0.0
     for k in range(changes.size):
-        change = changes[k]
-        way = 1.0 if change > 0.0 else -1.0
-        near = max(0.0, way * z / play)
-        half = z + 0.5 * change * (1.0 - near**STEEPNESS)
-        near = min(max(0.0, way * half / play), 1.0)
-        z += change * (1.0 - near**STEEPNESS)
+        z = min(max(z + changes[k], -play), play)
         lag[k + 1] = z

@@ -106,9 +106,10 @@ POLICIES: dict[str, Policy] = {
     "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     "drive_phase": Policy(steps={"late_s": 0.003}),
-    "drive_backlash": Policy(form_share=LAW),
+    "drive_backlash": Policy(shapes={"servo_s": (6e-3,)}, form_share=LAW),
     "clock_drift": Policy(steps={"drift_ppm": 200.0}),
-    "drive_frequency": Policy(steps={"frequency_share": 2e-4}),
+    # Whether its ramps last as commanded is told at the end of the motion alone.
+    "drive_frequency": Policy(steps={"frequency_share": 2e-4}, shapes={"ramps_kept_share": (0.0,)}),
 }
 
 FRICTION = "friction at the pulleys"
@@ -135,7 +136,14 @@ FAMILIES = (
 WHOLE = ("left_at_rest",)
 """Shapes that are one thing or another."""
 
-BETWEEN = ("bouc_wen_share", "bend", "counted_share", "drive_stays_share", "reaction_share")
+BETWEEN = (
+    "bouc_wen_share",
+    "bend",
+    "counted_share",
+    "drive_stays_share",
+    "reaction_share",
+    "ramps_kept_share",
+)
 """Shapes that lead from one law to another."""
 
 SATURATION_STEP_N = 0.3

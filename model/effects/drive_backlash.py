@@ -8,24 +8,28 @@ if TYPE_CHECKING:
     from model.motion import Motion
 
 
-def command(motion: "Motion", backlash_deg: float) -> "Motion":
-    """X* - z, |z| <= d on every angle."""
+def command(motion: "Motion", backlash_deg: float, servo_s: float) -> "Motion":
+    """X* - z, |z| <= d on every angle, z smoothed."""
     from math import radians
 
     from model.altered import Loose
 
-    return Loose(motion, radians(backlash_deg))
+    return Loose(motion, radians(backlash_deg), servo_s)
 
 
 EFFECT = Effect(
     name="drive_backlash",
     title="backlash of the drive",
     acts=Acts.DRIVE,
-    equation="X* - z, z' = X*' (1 - (z/d)^4) towards the stop, X*' away from it; angles only",
-    source="play operator, stops met as (z/d)^4; Nordin & Gutman, Automatica 38 (2002) 1633",
+    equation="X* - G z, z' = X*' between the stops |z| = d, 0 at them; G: a Gaussian of standard "
+    "deviation tau; angles only",
+    source="play operator; Nordin & Gutman, Automatica 38 (2002) 1633; a servo does not jump",
     signature="amplitude lost, a plateau after each reversal, odd harmonics; the same in every "
     "cable through the Jacobian",
-    parameters=(Parameter("backlash_deg", "deg", 0.03, 0.0, 0.5, "d, half the play", False, True),),
+    parameters=(
+        Parameter("backlash_deg", "deg", 0.03, 0.0, 0.5, "d, half the play", False, True),
+        Parameter("servo_s", "s", 6e-3, 2e-3, 5e-2, "tau", False),
+    ),
     command=command,
     longest_step_s=1e-3,
     cost="X*'' changes within a small part of the motion after reversal; more steps",

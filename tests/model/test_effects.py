@@ -1,5 +1,7 @@
 """One sweep over all effects: what holds for each that is there, and for the next."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -505,6 +507,30 @@ def test_the_drive_may_be_larger_faster_later_distorted_and_loose(rig: Rig) -> N
     loose = driven("drive_backlash", backlash_deg=0.2)
     assert np.abs(loose).max() == pytest.approx(np.deg2rad(1.8), rel=0.03)
     assert np.abs(loose - pose).max() <= np.deg2rad(0.2) * 1.001
+
+
+def test_a_tone_may_be_off_while_its_ramps_last_as_commanded(rig: Rig) -> None:
+    course = RampedSine.from_excitation(Excitation(rest_s=0.5, motion_s=4.0, ramp_s=0.5))
+    time_s = np.linspace(0.0, course.duration_s, 3000)
+    other = replace(course, frequency_hz=1.01 * course.frequency_hz)
+    slow = {"frequency_share": 0.01, "ramps_kept_share": 1.0}
+    for beside in ([], [ActiveEffect("drive_backlash", {"backlash_deg": 0.2})]):
+        tuned = Task(rig, motion=course, effects=[*beside, ActiveEffect("drive_frequency", slow)])
+        plain = Task(rig, motion=other, effects=beside)
+        assert tuned.driven.at(time_s)[0] == pytest.approx(plain.driven.at(time_s)[0], abs=1e-9)
+
+
+def test_a_gear_with_play_stands_until_the_other_flank_is_reached(rig: Rig) -> None:
+    course = RampedSine.from_excitation(Excitation(rest_s=0.0, motion_s=3.0, ramp_s=0.5))
+    quick = {"backlash_deg": 0.2, "servo_s": 2e-3}
+    loose = Task(rig, motion=course, effects=[ActiveEffect("drive_backlash", quick)]).driven
+    time_s = np.linspace(1.0, 2.0, 4001)
+    angle = np.rad2deg(loose.at(time_s)[0][:, 4])
+    stands = np.abs(loose.at(time_s)[1][:, 4]) < 0.5 * np.abs(course.at(time_s)[1][:, 4])
+    # It goes on where the drive is 0.4 deg back from its peak of 2 deg: twice in each cycle.
+    a_way = np.arccos(1.0 - 0.4 / 2.0) / np.pi
+    assert stands.mean() == pytest.approx(a_way, abs=0.03)
+    assert np.abs(angle[stands]) == pytest.approx(1.8, abs=0.02)
 
 
 def test_backlash_moves_as_its_rates_say(rig: Rig) -> None:
