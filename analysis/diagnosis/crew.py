@@ -1,5 +1,6 @@
 """Processes that simulate beside this one: most of a simulation's time here is Python's."""
 
+import math
 import os
 import pickle
 import signal
@@ -11,7 +12,7 @@ from concurrent.futures import BrokenExecutor, Future
 from functools import lru_cache
 from pathlib import Path
 from tempfile import NamedTemporaryFile
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 from weakref import finalize
 
 from threadpoolctl import threadpool_limits
@@ -28,7 +29,11 @@ LOOK_S = 2.0
 """So often a copy looks whether the process that asked is still there."""
 
 FEW = 30
-"""Work is done in this process until so much was done: to start others takes seconds."""
+"""Work is done in this process until so much was done, unless others are there for another crew: to
+start them takes seconds."""
+
+AWAKE_S = 0.5 * IDLE_S
+"""Those that had something to do so recently are still there."""
 
 
 class Worker(Protocol[Work_contra, Done_co]):
@@ -49,6 +54,9 @@ class Crew(Generic[Work, Done]):
     processes
         With this one.
     """
+
+    asked_s: ClassVar[float] = -math.inf
+    """When any crew last asked anything of others, on the monotonic clock."""
 
     def __init__(self, worker: Worker[Work, Done], processes: int) -> None:
         self._worker = worker
@@ -81,7 +89,8 @@ class Crew(Generic[Work, Done]):
     def _stripes(self, work: Sequence[Work]) -> tuple[range, list[range]]:
         """Which pieces this process does, and the others: none, until they are ready."""
         processes, count = self._others + 1, len(work)
-        if processes == 1 or count < 2 or self._seen < FEW:
+        awake = time.monotonic() - Crew.asked_s < AWAKE_S
+        if processes == 1 or count < 2 or (self._seen < FEW and not awake):
             return range(count), []
         if self._path is None:
             self._copy(work[0])
@@ -107,6 +116,7 @@ class Crew(Generic[Work, Done]):
     def _executor(self) -> Any:
         from loky import get_reusable_executor
 
+        Crew.asked_s = time.monotonic()
         return get_reusable_executor(max_workers=self._others, timeout=IDLE_S, initializer=_serve)
 
 

@@ -8,6 +8,7 @@ from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
     elsewhere_than,
+    farthest_first,
     noise_of,
     tells_more,
 )
@@ -287,6 +288,13 @@ class FollowedSearch(MoreLeader):
         if self._near:
             start = part_of_the_way(self._samples, self._nothing, start)
         self._lead(start.nuisance, start.state or guess.state, near=self._near)
+
+    @property
+    def farther(self) -> set[tuple[str, ...]]:
+        """Names of what leads farthest, where that is farther than parameters alone."""
+        best = self._best
+        is_farther = farthest_first(best) < farthest_first(self._nothing)
+        return {best.names} if best.state is not None and is_farther else set()
 
     @property
     def foretells(self) -> Followed | None:

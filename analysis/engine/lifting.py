@@ -1,6 +1,6 @@
 """What one recording says, led through all of them."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -58,15 +58,17 @@ class Lifting:
         through = lifted(self._refiner.system, self._part, [led], self._beside, FAR)
         return self._weigh(through.free, through.aside)
 
-    def lift(self, found: Sequence[Fitted]) -> None:
+    def lift(self, found: Sequence[Fitted], wanted: Container[tuple[str, ...]] = ()) -> None:
         """Lead all that contend in the pilot, even if parameters have to bend.
 
         Parameters
         ----------
         found
             What the pilot says, the best first.
+        wanted
+            Names of what is led however little the pilot says of it.
         """
-        contending = [Followed(one.point.nuisance, one.state) for one in _contending(found)]
+        contending = [Followed(one.point.nuisance, one.state) for one in _contending(found, wanted)]
         through = lifted(self._refiner.system, self._part, contending, self._beside)
         self._weigh(through.free or through.strained, through.aside)
 
@@ -77,13 +79,15 @@ class Lifting:
         return self.leads
 
 
-def _contending(found: Sequence[Fitted]) -> list[Fitted]:
+def _contending(found: Sequence[Fitted], wanted: Container[tuple[str, ...]] = ()) -> list[Fitted]:
     """Of what a pilot says, what is led in all recordings; none, where it says nothing."""
-    if not found or not found[0].hypothesis.parts:
-        return []
-    least = found[0].log_score - LIFTED
-    causes = [one for one in found if one.hypothesis.parts and one.log_score > least]
-    return causes[:MOST_LIFTED]
+    causes: list[Fitted] = []
+    if found and found[0].hypothesis.parts:
+        least = found[0].log_score - LIFTED
+        causes = [one for one in found if one.hypothesis.parts and one.log_score > least]
+    known = {one.hypothesis.names for one in causes[:MOST_LIFTED]}
+    asked = [one for one in found if one.hypothesis.names in wanted]
+    return [*(one for one in asked if one.hypothesis.names not in known), *causes[:MOST_LIFTED]]
 
 
 class Lifted(NamedTuple):

@@ -46,12 +46,13 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         if whole.fitted:
             return whole
     tried: list[str] = []
+    wanted: set[tuple[str, ...]] = set()
     for _ in range(PILOTS):
         pilot = _pilot(system, at, chains, tried)
         if pilot is None:
             break
         tried.append(pilot.records[0])
-        whole = _led_by(refiner, pilot, most_causes, tell)
+        whole = _led_by(refiner, pilot, most_causes, tell, wanted)
         if whole.fitted:
             return whole
     return Found((), (), faint=False)
@@ -64,8 +65,18 @@ class _Pilot(NamedTuple):
     nuisance: Array | None
 
 
-def _led_by(refiner: Refiner, pilot: _Pilot, most_causes: int, tell: Tell | None) -> Found:
-    """What all recordings say, from where a pilot leads; no hypotheses, where that is nowhere."""
+def _led_by(
+    refiner: Refiner,
+    pilot: _Pilot,
+    most_causes: int,
+    tell: Tell | None,
+    wanted: set[tuple[str, ...]],
+) -> Found:
+    """What all recordings say, from where a pilot leads; no hypotheses, where that is nowhere.
+
+    What leads an earlier pilot farthest, though not through it, is `wanted`: it is led in all
+    recordings from where the next comes to, however little that says of it. Gains what leads here.
+    """
     at = refiner.calibrated.at
     part = Part(refiner.system, pilot.records)
     beside = at if pilot.nuisance is None else pilot.nuisance
@@ -73,7 +84,9 @@ def _led_by(refiner: Refiner, pilot: _Pilot, most_causes: int, tell: Tell | None
     lifting = Lifting(refiner, part, beside, most_causes, tell)
     found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start, lifting.enough)
     if not lifting.leads:
-        lifting.lift(found.fitted)
+        lifting.lift(found.fitted, wanted)
+    if found.led is not None:
+        wanted |= found.led.search.farther
     if not lifting.leads:
         return Found((), (), faint=False)
     # What the pilot screened stays told, where all were led from what it found.

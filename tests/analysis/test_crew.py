@@ -1,6 +1,7 @@
 """Processes that simulate beside this one: what comes does not depend on who did it."""
 
 import gc
+import math
 import os
 import signal
 import subprocess
@@ -88,7 +89,8 @@ def _is_there(process: int) -> bool:
     return state.rsplit(")", 1)[1].split()[0] != "Z"
 
 
-def test_little_work_starts_nobody() -> None:
+def test_little_work_starts_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(crew.Crew, "asked_s", -math.inf)
     team: Crew[int, tuple[int, int]] = Crew(Squarer(0), 2)
     found = team.do(range(crew.FEW - 1))
     assert {process for _, process in found} == {os.getpid()}
