@@ -151,6 +151,6 @@ EFFECT = Effect(
     rates=rates,
     transverse=transverse,
     across=across,
-    longest_step_s=2e-3,
-    cost="the third mode sounds three times higher; twice the steps",
+    longest_step_s=3e-3,
+    cost="ten states a cable, and the third mode sounds three times higher",
 )
