@@ -176,11 +176,11 @@ class RivalLeader(Leader):
         """
         candidates = self._refiner.candidates
         for _ in range(EXCHANGES):
-            self._lead_through()
             self._lead_placed()
             self._lead_through()
             self._lead_kin(self._best)
             self._lead_everywhere()
+            self._lead_through()
             plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)
             if plain is None or plain.names in self._exchanged or self._effort > self._most:
                 break
