@@ -165,7 +165,7 @@ def test_cost_of_effects(rig: Rig, paper: Excitation) -> None:
     for name, ratio in ratios.items():
         say(f"  {name:20s} {ratio:.2f}")
     say(f"  all of them          {cost(tuple(ratios)) / bare:.2f}")
-    # The bar is 2 for each; three effects lie at it, 1.9 to 2.04: see docs/speed.md.
+    # The bar is 2 for each; seven effects miss it by now, and this fails: see docs/speed.md.
     assert np.median(list(ratios.values())) < 2.0
     assert max(ratios.values()) < 2.2
 
