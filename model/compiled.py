@@ -77,7 +77,7 @@ def lane_integrator(announce: Announce | None = None) -> Any:
 def _kernel_modules() -> tuple[ModuleType, ...]:
     """Modules whose functions are compiled; any of their functions may be called in the kernel."""
     from model import cable, kernel, kinematics, lanes, loops, platform
-    from model.library import assembled, bristle, context, smooth
+    from model.library import assembled, bristle, context, smooth, taut_string
     from model.library import lanes as layout
     from model.library.discovery import effect_modules
 
@@ -87,6 +87,7 @@ def _kernel_modules() -> tuple[ModuleType, ...]:
         platform,
         smooth,
         bristle,
+        taut_string,
         context,
         layout,
         *effect_modules(),

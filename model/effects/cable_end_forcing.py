@@ -2,13 +2,8 @@
 
 from typing import Any
 
-import numpy as np
-
 from model.library.effect import Acts, Effect, Parameter, State
-
-PI = float(np.pi)
-FIRST_MODE = 2.0 / PI
-"""Share of a straight line from base to anchor in sin(pi y / L)."""
+from model.library.taut_string import FIRST_MODE, PI, level, swept, tone_squared
 
 
 def transverse(
@@ -22,13 +17,15 @@ def transverse(
     anchor_velocity_z: Any,
 ) -> Any:
     """-2/pi w', and its share of the loss; w: the anchor's way across the cable, vertical plane."""
-    along = (
-        direction_x * anchor_velocity_x
-        + direction_y * anchor_velocity_y
-        + direction_z * anchor_velocity_z
+    vertical, _ = swept(
+        direction_x,
+        direction_y,
+        direction_z,
+        anchor_velocity_x,
+        anchor_velocity_y,
+        anchor_velocity_z,
     )
-    level = np.sqrt(1.0 - direction_z * direction_z + 1e-12)
-    shaken = forcing_share * FIRST_MODE * (anchor_velocity_z - along * direction_z) / level
+    shaken = forcing_share * FIRST_MODE * vertical
     return -shaken, damping * shaken
 
 
@@ -63,17 +60,17 @@ def rates(
     anchor_velocity_z: Any,
 ) -> Any:
     """Eq. 17 with n pi for pi; the rates are those of the cable, its loss is of its line's."""
-    along = (
-        direction_x * anchor_velocity_x
-        + direction_y * anchor_velocity_y
-        + direction_z * anchor_velocity_z
+    vertical, horizontal = swept(
+        direction_x,
+        direction_y,
+        direction_z,
+        anchor_velocity_x,
+        anchor_velocity_y,
+        anchor_velocity_z,
     )
-    level = np.sqrt(1.0 - direction_z * direction_z + 1e-12)
-    shaken = forcing_share * FIRST_MODE / level
-    vertical = shaken * (anchor_velocity_z - along * direction_z)
-    horizontal = shaken * (direction_y * anchor_velocity_x - direction_x * anchor_velocity_y)
-    wave = tension / line_density - axial_velocity * axial_velocity
-    square = PI * PI / (length * length) * wave
+    shaken = forcing_share * FIRST_MODE
+    vertical, horizontal = shaken * vertical, shaken * horizontal
+    square = tone_squared(tension, axial_velocity, length, line_density)
     v2_speed, v3_speed = v2_rate + vertical / 2.0, v3_rate - vertical / 3.0
     h1_speed, h2_speed = h1_rate - horizontal, h2_rate + horizontal / 2.0
     h3_speed = h3_rate - horizontal / 3.0
@@ -91,7 +88,7 @@ def rates(
     )
 
 
-def across(
+def reaction(
     forcing_share: Any,
     reaction_share: Any,
     mid_span: Any,
@@ -107,14 +104,14 @@ def across(
     direction_z: Any,
 ) -> Any:
     """T times the slope of the cable at its anchor, in both planes."""
-    level = np.sqrt(1.0 - direction_z * direction_z + 1e-12)
-    pulls = forcing_share * reaction_share * tension * PI / length / level
+    flat = level(direction_z)
+    pulls = forcing_share * reaction_share * tension * PI / length / flat
     vertical = pulls * (mid_span - 2.0 * v2 + 3.0 * v3)
     horizontal = pulls * (h1 - 2.0 * h2 + 3.0 * h3)
     return (
         horizontal * direction_y - vertical * direction_x * direction_z,
         -horizontal * direction_x - vertical * direction_y * direction_z,
-        vertical * level * level,
+        vertical * flat * flat,
     )
 
 
@@ -150,7 +147,7 @@ EFFECT = Effect(
     pull=pull,
     rates=rates,
     transverse=transverse,
-    across=across,
+    across=reaction,
     longest_step_s=3e-3,
     cost="ten states a cable, and the third mode sounds three times higher",
 )

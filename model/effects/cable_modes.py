@@ -2,18 +2,14 @@
 
 from typing import Any
 
-import numpy as np
-
 from model.library.effect import Acts, Effect, Parameter, State
-
-PI_SQUARED = float(np.pi) ** 2
-FIRST_MODE = 2.0 / float(np.pi)
+from model.library.taut_string import FIRST_MODE, PI, swept, tone_squared
 
 
 def pull(coupling: Any, v2: Any, v3: Any, h1: Any, h2: Any, stiffness: Any, length: Any) -> Any:
     """Add k sum of n^2 pi^2 X_n^2 / (4 L), Eq. 15 for each mode."""
     squares = 4.0 * v2 * v2 + 9.0 * v3 * v3 + h1 * h1 + 4.0 * h2 * h2
-    return coupling * stiffness * PI_SQUARED * squares / (4.0 * length)
+    return coupling * stiffness * PI * PI * squares / (4.0 * length)
 
 
 def rates(
@@ -38,17 +34,16 @@ def rates(
     anchor_velocity_z: Any,
 ) -> Any:
     """Eq. 17 with n pi for pi; the rates are those of the cable, its loss is of its line's."""
-    along = (
-        direction_x * anchor_velocity_x
-        + direction_y * anchor_velocity_y
-        + direction_z * anchor_velocity_z
+    vertical, horizontal = swept(
+        direction_x,
+        direction_y,
+        direction_z,
+        anchor_velocity_x,
+        anchor_velocity_y,
+        anchor_velocity_z,
     )
-    level = np.sqrt(1.0 - direction_z * direction_z + 1e-12)
-    vertical = FIRST_MODE * (anchor_velocity_z - along * direction_z) / level
-    sideways = (direction_y * anchor_velocity_x - direction_x * anchor_velocity_y) / level
-    horizontal = FIRST_MODE * sideways
-    wave = tension / line_density - axial_velocity * axial_velocity
-    square = PI_SQUARED / (length * length) * wave
+    vertical, horizontal = FIRST_MODE * vertical, FIRST_MODE * horizontal
+    square = tone_squared(tension, axial_velocity, length, line_density)
     v2_speed, v3_speed = v2_rate + vertical / 2.0, v3_rate - vertical / 3.0
     h1_speed, h2_speed = h1_rate - horizontal, h2_rate + horizontal / 2.0
     return (
