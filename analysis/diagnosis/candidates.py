@@ -6,6 +6,7 @@ from math import atan2, hypot
 
 import numpy as np
 
+from analysis.diagnosis.sighting import Sighting
 from analysis.engine.system import Candidate, Setting, Shape, Term
 from model.library.discovery import library
 from model.library.effect import Effect, Parameter
@@ -102,7 +103,11 @@ POLICIES: dict[str, Policy] = {
     "camera_axis": Policy(steps={"axis_roll_deg": 0.5, "axis_pitch_deg": 0.5, "axis_yaw_deg": 0.5}),
     "camera_latency": Policy(steps={"latency_s": 0.003}),
     "camera_exposure": Policy(steps={"exposure_s": 0.0625}, form_share=LINEAR),
-    "camera_rolling_shutter": Policy(form_share=LINEAR),
+    # Its stamp is of any row, a picture may be turned, and markers have been fitted in space.
+    "camera_rolling_shutter": Policy(
+        shapes={"before_share": (0.0, 0.12), "depth_share": (0.0, 1.0), "reads_up": (0.0, 1.0)},
+        form_share=LINEAR,
+    ),
     "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     "drive_phase": Policy(steps={"late_s": 0.003}),
@@ -133,7 +138,7 @@ FAMILIES = (
     | dict.fromkeys(LENGTHS, LENGTH)
 )
 
-WHOLE = ("left_at_rest",)
+WHOLE = ("left_at_rest", "reads_up")
 """Shapes that are one thing or another."""
 
 BETWEEN = (
@@ -142,6 +147,7 @@ BETWEEN = (
     "counted_share",
     "drive_stays_share",
     "reaction_share",
+    "depth_share",
     "ramps_kept_share",
 )
 """Shapes that lead from one law to another."""
@@ -304,7 +310,7 @@ def library_values(
     setting: Setting,
     peaks_n: Sequence[float],
     record: int,
-    frame_hz: float,
+    sighting: Sighting,
     records: int = 1,
 ) -> dict[str, float | tuple[float, ...]] | None:
     """A candidate's numbers as the library's effect takes them.
@@ -317,8 +323,8 @@ def library_values(
         Highest tension of each cable without it.
     record
         Which run it is for.
-    frame_hz
-        Of the camera.
+    sighting
+        What the rig file says of the camera.
     records
         How many runs there are.
 
@@ -350,12 +356,14 @@ def library_values(
         return {
             "frames": setting.shapes.get("count", 1.0),
             "at_s": at_s,
-            "frame_hz": frame_hz,
+            "frame_hz": sighting.frame_hz,
         }
     effect = library()[name]
     values: dict[str, float | tuple[float, ...]] = {
         key: one for key, one in setting.shapes.items() if "@" not in key
     }
+    if name == "camera_rolling_shutter":
+        values = {**sighting.shutter, **values}
     for begun in POLICIES.get(name, Policy()).begins:
         values[begun] = tuple(
             setting.shapes.get(_begins(begun, c, record, records), 0.0) for c in CABLE_NUMBERS

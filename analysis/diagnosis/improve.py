@@ -76,7 +76,7 @@ def physics(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, dict[st
                 setting,
                 machine.peaks_n,
                 record,
-                machine.frame_hz,
+                machine.sighting,
                 len(machine.recordings),
             )
             if own is None:

@@ -16,6 +16,7 @@ from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, no
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
+from analysis.diagnosis.sighting import sighting_of
 from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
 from model import Simulation, Task, simulate_many
 from model.library.discovery import library
@@ -89,8 +90,7 @@ class RecordedMachine:
         self._moving = [
             Moving(self._meanings, self._known, record) for record in range(len(recordings))
         ]
-        camera = recordings[0].rig.camera
-        self.frame_hz = camera.fps if camera is not None else 16.0
+        self.sighting = sighting_of(recordings[0].rig)
         times = [
             (one.excitation.start_s + one.shift_s, one.excitation.end_s + one.shift_s)
             for one in recordings
@@ -99,7 +99,7 @@ class RecordedMachine:
         slack = sorted({cable for one in recordings for cable in one.hanging})
         self._candidates = tuple(
             _as_seen(one, slack)
-            for one in candidates(effects, times, self.frame_hz)
+            for one in candidates(effects, times, self.sighting.frame_hz)
             if posed or one.side not in ("camera", "clock")
         )
         self._workers = workers
@@ -264,7 +264,7 @@ class RecordedMachine:
         values: Values = {}
         for name, setting in point.effects.items():
             own = library_values(
-                name, setting, self.peaks_n, record, self.frame_hz, len(self.recordings)
+                name, setting, self.peaks_n, record, self.sighting, len(self.recordings)
             )
             if own is not None:
                 values[name] = {

@@ -27,8 +27,8 @@ MARKERS = np.array([[x, 0.1, z] for x in (-0.03, 0.03) for z in (-0.03, 0.03)])
 """Corners of a plate on the platform's left side, platform frame, m: rows of the image run along
 X, from one row to the next is along Z."""
 
-FIELD_M = 0.3
-"""Height of what the camera sees, m."""
+FIELD_M = 0.68
+"""Height of what all rows of the camera see, m."""
 
 
 @dataclass(frozen=True)

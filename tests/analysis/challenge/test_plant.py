@@ -16,6 +16,7 @@ from analysis.challenge.plant.record import Measured, Sensing, measure
 from analysis.challenge.plant.sensors import KNEE_N, CellFault, Faults, read_cells
 from analysis.challenge.truth import drawn_offset
 from analysis.diagnosis.candidates import candidates, library_values
+from analysis.diagnosis.sighting import Sighting
 from analysis.engine.system import Setting
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
 from model import ActiveEffect
@@ -196,7 +197,7 @@ def test_a_cell_that_bends_into_its_limit_is_among_what_is_fitted() -> None:
     seen = read_cells(t_s, tension, CellFault(limit_n=limits))
     share = KNEE_N / 0.1
     setting = Setting({"clipped_n@4": 0.1}, {"knee_share": share})
-    values = library_values("cell_saturation", setting, peaks, 0, 16.0)
+    values = library_values("cell_saturation", setting, peaks, 0, Sighting(16.0, {}))
     assert values is not None
     law = library()["cell_saturation"].measure
     assert law is not None
