@@ -29,8 +29,9 @@ def tension(
     elongation: Quantity,
     mid_span: Quantity,
     length: Quantity,
+    least: Quantity = 0.0,
 ) -> Quantity:
-    """T_i of Eq. 16, in N; never negative, because a cable cannot push.
+    """T_i of Eq. 16, in N.
 
     Parameters
     ----------
@@ -44,9 +45,11 @@ def tension(
         X_wi in m.
     length
         L_i in m.
+    least
+        What it does not fall below, N: 0 of a cable, which cannot push.
     """
     pull = pretension + stiffness * (elongation + vibration_extension(mid_span, length))
-    return np.maximum(pull, 0.0)
+    return np.maximum(pull, least)
 
 
 def transverse_acceleration(

@@ -1,7 +1,8 @@
 """What drives the platform along X* (design, section 4): an ideal wrench, or winches.
 
 ``drive = "wrench"`` is the wrench that makes the nominal platform (elastic cables
-T_0 + k Delta L, no cable vibration) follow X*. ``drive = "winch"`` pays out the length each cable
+T_0 + k Delta L, no cable vibration; whether they hang slack or push is `Machine.least_pull`)
+follow X*. ``drive = "winch"`` pays out the length each cable
 has on X*. Either is tabulated once, at every stage of every step, and frozen: initial
 disturbances, cable vibration and whatever the plant has beyond the nominal machine make the
 platform deviate.
@@ -71,6 +72,7 @@ def required_drive(machine: Machine, pose: Array, rate: Array, acceleration: Arr
             length - machine.rest_length[i],
             0.0,
             length,
+            machine.least_pull,
         )
         force = subtract(force, scale(pull, direction))
         moment = subtract(moment, scale(pull, cross(arm, direction)))

@@ -66,6 +66,7 @@ class Plant(NamedTuple):
     pretension: Array
     line_density: Array
     damping: Array
+    least_pull: float
 
 
 class Extras(NamedTuple):
@@ -483,7 +484,14 @@ def drive_wrench(pose: Array, rate: Array, acceleration_: Array, plant: Any, wre
             position = (pose[row, 0], pose[row, 1], pose[row, 2])
             length, direction = cable_line(base, position, arm)
             elongation = length - plant.rest_length[i]
-            pull = tension(plant.pretension[i], plant.stiffness[i], elongation, 0.0, length)
+            pull = tension(
+                plant.pretension[i],
+                plant.stiffness[i],
+                elongation,
+                0.0,
+                length,
+                plant.least_pull,
+            )
             force = subtract(force, scale(pull, direction))
             moment = subtract(moment, scale(pull, cross(arm, direction)))
         for axis in range(3):

@@ -46,6 +46,9 @@ class Machine:
     held
         What holds the rig file's machine at rest at X* = 0 beside cables and weight, force and
         moment, shape (6,), N and N m: what its numbers leave of static equilibrium.
+    least_pull
+        The lowest tension that a drive made for this machine reckons with, N: 0: its cables go
+        slack; -inf: they would push. A plant's never push.
     """
 
     mass: float
@@ -59,6 +62,7 @@ class Machine:
     gravity: float = STANDARD_GRAVITY_M_PER_S2
     drive_arm: Array = field(default_factory=lambda: np.zeros(3))
     held: Array = field(default_factory=lambda: np.zeros(6))
+    least_pull: float = 0.0
 
     @classmethod
     def from_rig(cls, rig: Rig) -> Self:
@@ -159,6 +163,7 @@ class Machine:
             pretension=_packed(self.pretension),
             line_density=_packed(self.line_density),
             damping=_packed(self.damping),
+            least_pull=float(self.least_pull),
         )
 
 

@@ -114,7 +114,15 @@ class Task:
     @cached_property
     def nominal_machine(self) -> Machine:
         """The machine the drive was made for."""
-        return Machine.from_rig(self.nominal or self.rig)
+        machine = Machine.from_rig(self.nominal or self.rig)
+        for one in self.acting:
+            if one.effect.reckoned is not None:
+                known = one.numbers()
+                taken = [
+                    name for name in signature(one.effect.reckoned).parameters if name in known
+                ]
+                machine = one.effect.reckoned(machine, **{name: known[name] for name in taken})
+        return machine
 
     @cached_property
     def machine(self) -> Machine:

@@ -67,7 +67,8 @@ POLICIES: dict[str, Policy] = {
         }
     ),
     "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
-    "cable_slack": Policy(form_share=NUMBER),
+    # Whoever made its drive may have reckoned with cables that push, as Eq. 16 has them.
+    "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),
     "cable_stiffening": Policy(shapes={"asymmetry_m": (0.0, 0.02)}),
     # A rig's stiffness may have been measured more slowly than the slowest branch relaxes.
@@ -138,7 +139,7 @@ FAMILIES = (
     | dict.fromkeys(LENGTHS, LENGTH)
 )
 
-WHOLE = ("left_at_rest", "reads_up")
+WHOLE = ("left_at_rest", "reads_up", "drive_pushes")
 """Shapes that are one thing or another."""
 
 BETWEEN = (

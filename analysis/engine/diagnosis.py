@@ -33,8 +33,8 @@ never quite exact."""
 FORETOLD = (
     "what was recorded after {until_s:.1f} s does not count: up to there it can be foretold, and "
     "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
-    "resonance, does that, cables that stick and slip do, and so does something that only begins "
-    "then; another frequency of the drive tells which"
+    "resonance, does that, cables that stick and slip or go slack do, and so does something that "
+    "only begins then; another frequency of the drive tells which"
 )
 
 

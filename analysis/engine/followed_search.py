@@ -1,6 +1,7 @@
 """Hypotheses led to the ring's phase, each for itself, and what all samples then say of them."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -48,8 +49,9 @@ NEAR = 10.0
 """What leaves less than this of the first stretch is another law of the same thing, if not its own.
 Where friction all but holds the platform, numbers that are right to a percent leave more."""
 
-SOME = 0.25
-"""Of the time: what explains as much, when lines were asked before, is looked at in that alone."""
+SOME, CLEAR, STRETCHES = 0.2, 1.2, 200
+"""Of the time: what explains as much, when lines were asked before, is looked at in that alone: up
+to where no more than so much is left of the squared misfit of a sample, told that closely."""
 
 
 class FollowedSearch(MoreLeader):
@@ -298,10 +300,29 @@ class FollowedSearch(MoreLeader):
 
     @property
     def foretells(self) -> Followed | None:
-        """What foretells a part of the time to the noise, and parameters are hardly bent for it."""
+        """What foretells a part of the time to the noise, and parameters are hardly bent for it.
+
+        Where they are, it is what came as far as they were not: what grows of itself is followed
+        on in any direction.
+        """
         best = self._best
-        told = best.state is not None and SOME <= best.share < 1.0 and best.strain < FAR
-        return best if told and not self.arrived else None
+        if best.about is not None and best.strain >= FAR:
+            best = replace(best.about, share=best.about.telling)
+        told = best.state is not None and best.share < 1.0 and best.strain < FAR
+        if not told or self.arrived:
+            return None
+        clear = self._clear(best)
+        return replace(best, share=clear) if clear >= SOME else None
+
+    def _clear(self, led: Followed) -> float:
+        """Up to which share of the time, of that it came to, little more than noise is left."""
+        (found,) = self._samples.residuals([led.point], led.share)
+        shares = np.arange(1, STRETCHES + 1) / STRETCHES
+        left = (
+            (one, np.mean(found[self._samples.shares <= one] ** 2))
+            for one in shares[shares <= led.share]
+        )
+        return max((float(one) for one, square in left if square < CLEAR), default=0.0)
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""

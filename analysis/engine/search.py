@@ -168,7 +168,8 @@ def _by_lines(
     shown = _shown(refiner)
     if led is not None and shown is not None:
         # What samples show, and could not be followed with that either, lines tell no better.
-        return Found(singles, [shown, *finder.ranked()], faint=False)
+        ranked = [shown, *finder.ranked()]
+        return Found(singles, ranked, faint=False, foretells=led.search.foretells)
     alone = _guesses(finder.ranked())
     if led is not None:
         told = [*_to_follow(refiner, null, led.single, alone), *_as_likely(refiner, null, alone)]

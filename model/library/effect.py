@@ -132,6 +132,8 @@ class Effect:
         Plant: adds force and moment on the platform, a tuple of six.
     change
         Parameter: gives another `Machine`.
+    reckoned
+        Plant: gives another `Machine` that the drive was made for.
     command
         Drive: gives another `Motion`.
     measure
@@ -166,6 +168,7 @@ class Effect:
     across: Law | None = None
     wrench: Law | None = None
     change: Law | None = None
+    reckoned: Law | None = None
     command: Law | None = None
     measure: Law | None = None
     order: int = 0

@@ -6,6 +6,7 @@ import pytest
 from cdpr8.rigfile import Excitation, Rig
 from model import Machine, simulate
 from model.drive import required_drive
+from model.effects import ActiveEffect
 
 QUIET = {"platform_offset_m": (0.0, 0.0, 0.0), "cable_offset_m": 0.0}
 
@@ -33,6 +34,18 @@ def test_large_motion_that_slackens_a_cable_is_still_followed(rig: Rig) -> None:
     run = simulate(rig, motion(amplitude_deg=12.0, frequency_hz=1.0))
     assert run.outcome.status == "slack"
     assert np.abs(run.pose - run.commanded_pose).max() < 1e-7
+
+
+def test_a_drive_that_reckons_with_cables_that_push_sets_its_platform_ringing(rig: Rig) -> None:
+    course = motion(amplitude_deg=12.0, frequency_hz=1.0)
+    reckons = ActiveEffect("cable_slack", {"slack_m": 1e-9, "drive_pushes": 1.0})
+    knows = ActiveEffect("cable_slack", {"slack_m": 1e-9, "drive_pushes": 0.0})
+    rings, follows = (simulate(rig, course, effects=(one,)) for one in (reckons, knows))
+    before = np.cumsum(rings.tension_n.min(axis=1) < 1e-3) == 0
+    off = np.abs(rings.pose - rings.commanded_pose).max(axis=1)
+    assert off[before].max() < 1e-7, "until a cable is slack both drives ask for the same"
+    assert off.max() > 1e-3
+    assert np.abs(follows.pose - follows.commanded_pose).max() < 0.01 * off.max()
 
 
 def test_the_drive_absorbs_what_the_rig_file_leaves_of_static_equilibrium(rig: Rig) -> None:

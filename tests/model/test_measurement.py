@@ -107,6 +107,19 @@ def test_a_tone_is_read_between_rows_twenty_times_closer_than_a_straight_line() 
     assert np.abs(seen).max() < np.abs(straight).max() / 20.0
 
 
+def test_a_cable_that_goes_slack_has_a_corner_between_rows() -> None:
+    time_s, tone = np.arange(301) / 333.0, 2.0 * np.pi * 3.0
+    read_s = np.linspace(0.1, 0.8, 3000)
+
+    def pull(at_s: np.ndarray) -> np.ndarray:
+        return np.asarray(np.maximum(5.0 * np.sin(tone * at_s) + 1.0, 0.0))
+
+    rows = np.repeat(pull(time_s)[:, None], 8, axis=1)
+    seen = _read(time_s, rows, read_s)[:, 0]
+    assert seen.min() == 0.0
+    assert np.abs(seen - pull(read_s)).max() < 2e-3
+
+
 def test_a_jump_between_rows_reaches_no_further_than_the_next_row() -> None:
     time_s = np.arange(40) / 10.0
     tension = np.repeat((time_s >= 2.0).astype(float)[:, None], 8, axis=1)
