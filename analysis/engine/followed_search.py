@@ -28,6 +28,8 @@ from analysis.engine.refine import Refiner
 from analysis.engine.released import released
 from analysis.engine.ring_fit import FAR, follow_ring
 from analysis.engine.sensitivity import Progress
+from analysis.engine.survey import sticks, surveyed
+from analysis.engine.way import AT_ONCE
 
 EARLY = 0.03
 """Where none of the first that were tried can be led so much farther than parameters alone, as a
@@ -49,7 +51,7 @@ NEAR = 10.0
 """What leaves less than this of the first stretch is another law of the same thing, if not its own.
 Where friction all but holds the platform, numbers that are right to a percent leave more."""
 
-SOME, CLEAR, STRETCHES = 0.2, 1.2, 200
+SOME, CLEAR, STRETCHES = 0.2, 1.3, 200
 """Of the time: what explains as much, when lines were asked before, is looked at in that alone: up
 to where no more than so much is left of the squared misfit of a sample, told that closely."""
 
@@ -79,6 +81,7 @@ class FollowedSearch(MoreLeader):
         super().__init__(refiner, nothing, most_causes, progress, near=near)
         self._enough = enough
         self._asked_of: set[tuple[str, ...]] = set()
+        self._slips = False
         self.ended = False
         """Whether something was enough."""
 
@@ -107,7 +110,7 @@ class FollowedSearch(MoreLeader):
             self._lead_told(hypotheses)
         else:
             self.lead_first(hypotheses)
-        if not self._led or self.ended:
+        if not self._led or self.ended or (self._slips and self.foretells is not None):
             return
         if not self._near:
             tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
@@ -232,6 +235,8 @@ class FollowedSearch(MoreLeader):
         """
         before = self._samples.effort
         begun, least = self._begin(self._starts(guesses))
+        begun = self._surveyed(begun)
+        least = min([least, *(one.left for one in begun[:1])])
         if begun and begun[0].left < NEAR and not (self._led and self._best.to_end):
             more, closer = self._begin(alike(self._samples, begun[0], self._refiner.candidates))
             begun, least = sorted([*begun, *more], key=lambda one: one.left), min(least, closer)
@@ -243,6 +248,16 @@ class FollowedSearch(MoreLeader):
         # What it takes from here on is spent on what is likely.
         self._most = max(self._most, self._effort + EFFORT)
         self._is_enough()
+
+    def _surveyed(self, begun: list[Followed]) -> list[Followed]:
+        """What leaves little of the first stretch put first, where only a survey leads there."""
+        stuck = [one for one in begun if sticks(one)]
+        if not stuck or begun[0].left < NEAR or (self._led and self._best.to_end):
+            return begun
+        still = self._nothing.about or self._nothing
+        found = surveyed(self._samples, stuck[0], still.nuisance)
+        self._slips = found.left < AT_ONCE
+        return sorted([found, *begun], key=lambda one: one.left)
 
     def _starts(self, guesses: Sequence[Guess]) -> Iterator[Followed]:
         """Where what lines tell leads over the first stretch."""
@@ -282,7 +297,8 @@ class FollowedSearch(MoreLeader):
     def _lead_on(self, start: Followed) -> None:
         """Lead on what was led over the first stretch."""
         assert start.state is not None
-        self._lead(start.nuisance, start.state, near=False)
+        passed = start.share if start.left < AT_ONCE else 0.0
+        self._lead(start.nuisance, start.state, near=False, passed=passed)
 
     def _lead_guess(self, guess: Guess) -> None:
         """Lead what straight lines promise, or, near the phase, so much of it as leaves least."""

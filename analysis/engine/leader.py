@@ -112,15 +112,16 @@ class Leader:
     def _best(self) -> Followed:
         return min(self._led, key=farthest_first, default=self._nothing)
 
-    def _lead(self, nuisance: Array, state: State, *, near: bool) -> None:
+    def _lead(self, nuisance: Array, state: State, *, near: bool, passed: float = 0.0) -> None:
         self._begun.append(state)
         system, ahead = self._system, self._best.costs if self._led else None
         # What nuisances do, about what a new hypothesis is near to.
         close = self._nothing if self._best.columns is None else self._best
         lent = close.columns if near else None
         found = follow_ring(
-            system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent
-        )
+            system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent,
+            passed=passed,
+        )  # fmt: skip
         lost = self._best.to_end and found.misfit > HOPELESS * self._best.misfit
         if near and found.share < 1.0 and not lost:
             self._effort += found.effort

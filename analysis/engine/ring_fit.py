@@ -58,6 +58,7 @@ def follow_ring(
     most: float = EFFORT,
     lent: Array | None = None,
     known: Known | None = None,
+    passed: float = 0.0,
 ) -> Followed:
     """Free numbers at which the simulation, ring and all, fits best.
 
@@ -79,11 +80,13 @@ def follow_ring(
         See `Way`: for what is near another hypothesis, over the same samples.
     known
         What is known of free numbers; None: priors of nuisances.
+    passed
+        Share of the time over which they were led there.
     """
     samples = Samples(system, held=held, everything=everything)
     way = Way(samples, Followed(nuisance, state), lent, known)
     costs: dict[float, float] = {}
-    share = 0.0
+    share = passed
     came: Followed | None = None
     about: Followed | None = None
     while share < 1.0 and samples.effort < most:

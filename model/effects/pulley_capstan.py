@@ -2,7 +2,14 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, LONGEST_STEP_S, bent
+from model.library.bristle import (
+    BENT_AT_REST,
+    BRISTLE_LOSS,
+    LONGEST_STEP_S,
+    bent,
+    held,
+    lost_over,
+)
 from model.library.effect import Acts, Effect, Parameter, State
 
 
@@ -17,10 +24,11 @@ def pull(
     elastic: Any,
     pretension: Any,
 ) -> Any:
-    """T (exp(mu theta (z + t_b z')) - 1), less what it holds at rest."""
+    """T (exp(mu theta (h(z) + t_b z')) - 1), less what it holds at rest."""
     rate = rates(presliding_m, bent_at_rest, bristle, axial_velocity)
     grip = friction * wrap_rad
-    now = _more(grip * (bristle + bent_at_rest + bristle_loss_s * rate))
+    turned = held(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
+    now = _more(grip * (turned + bristle_loss_s * rate))
     return elastic * now - pretension * _more(grip * bent_at_rest)
 
 
@@ -37,8 +45,8 @@ def rates(presliding_m: Any, bent_at_rest: Any, bristle: Any, axial_velocity: An
 def steepest(
     friction: Any, wrap_rad: Any, presliding_m: Any, bristle_loss_s: Any, pretension: Any
 ) -> Any:
-    """Give mu theta T t_b / x_s, of a bristle that sticks, with room for T above T_0."""
-    return 2.0 * pretension * friction * wrap_rad * bristle_loss_s / presliding_m
+    """Give mu theta T (t_b + 0.41 t) / x_s, of a bristle that begins to slip, with room for T."""
+    return 2.0 * pretension * friction * wrap_rad * lost_over(presliding_m, bristle_loss_s)
 
 
 def stiffest(friction: Any, wrap_rad: Any, presliding_m: Any, pretension: Any) -> Any:
@@ -50,8 +58,9 @@ EFFECT = Effect(
     name="pulley_capstan",
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += T (exp(mu theta (z + t_b z')) - 1) - T_0 (exp(mu theta z_0) - 1), "
-    "z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.5 ms",
+    equation="T += T (exp(mu theta (h + t_b z')) - 1) - T_0 (exp(mu theta z_0) - 1), "
+    "z' = (v - |v| z)/y, t = 0.5 ms, "
+    "h = w z + (1 - w) sgn v, w = x_s/y, y = (x_s^4 + (v t)^4)^(1/4)",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",

@@ -7,6 +7,7 @@ from model.library.bristle import (
     BRISTLE_LOSS,
     LONGEST_STEP_S,
     bent,
+    held,
     steepest,
     stiffest,
 )
@@ -21,9 +22,10 @@ def pull(
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
-    """F_c (z - z_0 + t_b z'): the tension at the platform is higher while the cable is drawn."""
+    """F_c (h(z) - z_0 + t_b z'): the tension at the platform is higher while the cable is drawn."""
     rate = rates(presliding_m, bent_at_rest, bristle, axial_velocity)
-    return coulomb_n * (bristle + bristle_loss_s * rate)
+    now = held(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
+    return coulomb_n * (now - bent_at_rest + bristle_loss_s * rate)
 
 
 def rates(presliding_m: Any, bent_at_rest: Any, bristle: Any, axial_velocity: Any) -> Any:
@@ -35,7 +37,8 @@ EFFECT = Effect(
     name="pulley_coulomb",
     title="Coulomb friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z)/sqrt(x_s^2 + (v t)^2), t = 0.5 ms",
+    equation="T += F_c (h - z_0 + t_b z'), z' = (v - |v| z)/y, t = 0.5 ms, "
+    "h = w z + (1 - w) sgn v, w = x_s/y, y = (x_s^4 + (v t)^4)^(1/4)",
     source="Coulomb (1785); sticks as by Canudas de Wit et al., IEEE TAC 40 (1995) 419; Olsson et "
     "al., Eur. J. Control 4 (1998) 176",
     signature="step at velocity reversal; odd harmonics as 1/n; quadrature 4 F_c / pi, whatever "

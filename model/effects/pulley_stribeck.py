@@ -7,6 +7,7 @@ from model.library.bristle import (
     BRISTLE_LOSS,
     LONGEST_STEP_S,
     bent,
+    held,
     steepest,
     stiffest,
 )
@@ -23,8 +24,13 @@ def rates(
     axial_velocity: Any,
 ) -> Any:
     """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2)."""
-    level = 1.0 + (static_ratio - 1.0) * gaussian(axial_velocity / stribeck_m_per_s)
+    level = _level(static_ratio, stribeck_m_per_s, axial_velocity)
     return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level)
+
+
+def _level(static_ratio: Any, stribeck_m_per_s: Any, axial_velocity: Any) -> Any:
+    """g: F_s / F_c where the cable all but stands, 1 where it slips."""
+    return 1.0 + (static_ratio - 1.0) * gaussian(axial_velocity / stribeck_m_per_s)
 
 
 def pull(
@@ -37,19 +43,22 @@ def pull(
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
-    """F_c (z - z_0 + t_b z'), z up to F_s / F_c."""
+    """F_c (h(z) - z_0 + t_b z'), z up to F_s / F_c."""
     rate = rates(
         static_ratio, stribeck_m_per_s, presliding_m, bent_at_rest, bristle, axial_velocity
     )
-    return coulomb_n * (bristle + bristle_loss_s * rate)
+    level = _level(static_ratio, stribeck_m_per_s, axial_velocity)
+    now = held(bristle + bent_at_rest, axial_velocity, presliding_m, level)
+    return coulomb_n * (now - bent_at_rest + bristle_loss_s * rate)
 
 
 EFFECT = Effect(
     name="pulley_stribeck",
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (z - z_0 + t_b z'), z' = (v - |v| z/g)/sqrt(x_s^2 + (v t)^2), "
-    "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), t = 0.5 ms",
+    equation="T += F_c (h - z_0 + t_b z'), z' = (v - |v| z/g)/y, t = 0.5 ms, "
+    "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), "
+    "h = w z + (1 - w) g sgn v, w = x_s/y, y = (x_s^4 + (v t)^4)^(1/4)",
     source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
     "Automatica 30 (1994) 1083",
     signature="spike at velocity reversal, negative slope after it; higher odd harmonics than "

@@ -14,7 +14,10 @@ CREEP_M_PER_S = 2e-7
 
 CATCHES_S = 5e-4
 """However fast the cable slips, its bristles take this long to turn over: steps need not be shorter
-than what the rest of a machine asks for. About a reversal, where cables are slow, it is nothing."""
+than what the rest of a machine asks for. `held` makes up for it."""
+
+STEEP = 0.41
+"""Largest slope of 1 - (1 + u^4)^(-1/4), rounded up."""
 
 LONGEST_STEP_S = 3.1 * CATCHES_S
 """No step is longer: dp5 follows a decay over up to 3.3 of its times, and beyond that a bristle
@@ -31,7 +34,7 @@ BENT_AT_REST = Parameter(
 
 
 def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
-    """Give z' = (v - |v| z / g) / sqrt(x_s^2 + (v t)^2).
+    """Give z' = (v - |v| z / g) / (x_s^4 + (v t)^4)^(1/4).
 
     Parameters
     ----------
@@ -45,14 +48,40 @@ def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
         g, the friction at this speed over the constant one.
     """
     size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
+    return (slip - size * bristle / level) / _way(size, presliding_m)
+
+
+def held(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
+    """What a bristle that is bent by z holds: w of z, and 1 - w of g sgn v, which it turns to.
+
+    With w = x_s / (x_s^4 + (v t)^4)^(1/4) that is, to first order of t, what a bristle would hold
+    that turns over at once: of one that sticks all of z, of one that slips the friction itself.
+
+    Parameters
+    ----------
+    bristle, slip, presliding_m, level
+        As for `bent`.
+    """
+    size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
+    sticks = presliding_m / _way(size, presliding_m)
+    return sticks * bristle + (1.0 - sticks) * level * slip / size
+
+
+def _way(size: Any, presliding_m: Any) -> Any:
+    """(x_s^4 + (v t)^4)^(1/4): the way that bends a bristle, however slow it may turn over, m."""
     caught = CATCHES_S * size
-    way = np.sqrt(presliding_m * presliding_m + caught * caught)
-    return (slip - size * bristle / level) / way
+    stuck, slid = presliding_m * presliding_m, caught * caught
+    return np.sqrt(np.sqrt(stuck * stuck + slid * slid))
+
+
+def lost_over(presliding_m: Any, bristle_loss_s: Any) -> Any:
+    """The largest slope of `held` and of the loss over speed, s/m."""
+    return (bristle_loss_s + STEEP * CATCHES_S) / presliding_m
 
 
 def steepest(coulomb_n: Any, presliding_m: Any, bristle_loss_s: Any) -> Any:
-    """F_c t_b / x_s, of a bristle that sticks: see `Effect.steepest`."""
-    return coulomb_n * bristle_loss_s / presliding_m
+    """F_c (t_b + 0.41 t) / x_s, of a bristle that begins to slip: see `Effect.steepest`."""
+    return coulomb_n * lost_over(presliding_m, bristle_loss_s)
 
 
 def stiffest(coulomb_n: Any, presliding_m: Any) -> Any:

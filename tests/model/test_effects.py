@@ -11,6 +11,7 @@ from cdpr8.rigfile.schema import CellPlace
 from model import Machine, Simulation, Task, observe, simulate, simulate_many
 from model.effects import ActiveEffect, Effect, library
 from model.effects.cable_sag import pull as sag_pull
+from model.library.bristle import bent, held
 from model.library.discovery import kernel_effects
 from model.library.effect import Acts
 from model.motion import RampedSine
@@ -364,6 +365,24 @@ def test_pulley_geometry_is_that_of_a_wheel(rig: Rig) -> None:
         bare = [np.linalg.norm(base - anchor - d) for d in (0.0 * way, way)]
         wrong = (bare[1] - bare[0]) - (exact[1] - exact[0])
         assert abs((ours[1] - ours[0]) - (exact[1] - exact[0])) < 0.1 * abs(wrong)
+
+
+def test_friction_that_slips_is_what_a_bristle_without_delay_holds() -> None:
+    """LuGre's own law, by short steps, against the one whose bristles turn over slowly."""
+    presliding_m, step_s = 5e-6, 1e-6
+    time_s = np.arange(0.0, 0.25, step_s)
+    slip = 0.08 * np.sin(2.0 * np.pi * 8.0 * time_s)
+    level = 1.0 + 0.8 * np.exp(-((slip / 0.02) ** 2))
+    exact, ours = 0.0, 0.0
+    missed, late = [], []
+    for v, g in zip(slip, level, strict=True):
+        late.append(ours - exact)
+        missed.append(held(ours, v, presliding_m, g) - exact)
+        exact += step_s * (v - abs(v) * exact / g) / presliding_m
+        ours += step_s * bent(ours, v, presliding_m, g)
+    rms = [float(np.sqrt(np.mean(np.square(one)))) for one in (missed, late)]
+    assert rms[0] < 0.012
+    assert rms[0] < rms[1]
 
 
 SHUTTER = {"readout_s": 0.03, "field_m": 0.3, "plate_y_m": 0.1, "plate_half_m": 0.03}

@@ -14,6 +14,7 @@ from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
+from analysis.engine.survey import sticks, surveyed
 from analysis.engine.system import Array, Prediction
 
 T_S = np.arange(0.0, 20.0, 0.02)
@@ -117,6 +118,19 @@ def test_another_law_of_it_is_begun_from_where_the_wrong_one_has_come_to() -> No
     assert right.left == pytest.approx(1.0, abs=0.2)
     assert right.state is not None
     assert right.state.values == pytest.approx(true.values, abs=0.05)
+
+
+def test_a_survey_finds_the_valley_where_what_was_told_is_far_off() -> None:
+    true = state_of(0.6, 0.5)
+    samples = Samples(Sticking(true.point(np.array([1.0]))), everything=True)
+    far = Guess(state_of(1.4, -0.6), np.zeros(1))
+    lost = graduated(samples, far)
+    assert lost.left > 10.0
+    assert sticks(lost)
+    found = surveyed(samples, lost, np.zeros(1))
+    assert found.left == pytest.approx(1.0, abs=0.2)
+    assert found.state is not None
+    assert found.state.values == pytest.approx(true.values, abs=0.02)
 
 
 def test_what_lines_tell_is_known_to_a_share_and_nuisances_as_before() -> None:
