@@ -51,9 +51,10 @@ NEAR = 10.0
 """What leaves less than this of the first stretch is another law of the same thing, if not its own.
 Where friction all but holds the platform, numbers that are right to a percent leave more."""
 
-SOME, CLEAR, STRETCHES = 0.2, 1.3, 200
+SOME, CLEAR, STRETCHES = 0.2, (1.1, 1.2, 1.3), 200
 """Of the time: what explains as much, when lines were asked before, is looked at in that alone: up
-to where no more than so much is left of the squared misfit of a sample, told that closely."""
+to where no more than so much is left of the squared misfit of a sample, the least of these with
+which it is that long, told that closely."""
 
 
 class FollowedSearch(MoreLeader):
@@ -328,17 +329,16 @@ class FollowedSearch(MoreLeader):
         if not told or self.arrived:
             return None
         clear = self._clear(best)
-        return replace(best, share=clear) if clear >= SOME else None
+        return replace(best, share=clear) if clear else None
 
     def _clear(self, led: Followed) -> float:
         """Up to which share of the time, of that it came to, little more than noise is left."""
         (found,) = self._samples.residuals([led.point], led.share)
         shares = np.arange(1, STRETCHES + 1) / STRETCHES
-        left = (
-            (one, np.mean(found[self._samples.shares <= one] ** 2))
-            for one in shares[shares <= led.share]
-        )
-        return max((float(one) for one, square in left if square < CLEAR), default=0.0)
+        shares = shares[shares <= led.share]
+        left = np.array([np.mean(found[self._samples.shares <= one] ** 2) for one in shares])
+        longest = [float(max(shares[left < most], default=0.0)) for most in CLEAR]
+        return next((one for one in longest if one >= SOME), 0.0)
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""
