@@ -2,10 +2,9 @@
 
 ``drive = "wrench"`` is the wrench that makes the nominal platform (elastic cables
 T_0 + k Delta L, no cable vibration; whether they hang slack or push is `Machine.least_pull`)
-follow X*. ``drive = "winch"`` pays out the length each cable
-has on X*. Either is tabulated once, at every stage of every step, and frozen: initial
-disturbances, cable vibration and whatever the plant has beyond the nominal machine make the
-platform deviate.
+follow X*. ``drive = "winch"`` pays out the length each cable has on X*. Either is tabulated once,
+at every stage of every step, and frozen: initial disturbances, cable vibration and whatever the
+plant has beyond the nominal machine make the platform deviate.
 """
 
 import numpy as np
