@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import signature
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from model.drive import drive_table
 from model.extras import pack, state_count
 from model.kept_drive import DriveKey, Resting, followed, resting_wrench, table_at_stages
 from model.kernel import PLATFORM_STATES, STATES, Extras
-from model.library.effect import Acts
+from model.library.effect import Acts, Law
 from model.library.selection import ActiveEffect, of_rig, those_that_act
 from model.machine import Machine
 from model.method import Method, find_method
@@ -117,11 +117,7 @@ class Task:
         machine = Machine.from_rig(self.nominal or self.rig)
         for one in self.acting:
             if one.effect.reckoned is not None:
-                known = one.numbers()
-                taken = [
-                    name for name in signature(one.effect.reckoned).parameters if name in known
-                ]
-                machine = one.effect.reckoned(machine, **{name: known[name] for name in taken})
+                machine = _asked(one.effect.reckoned, one.numbers(), machine=machine)
         return machine
 
     @cached_property
@@ -203,8 +199,7 @@ class Task:
         for one in self.acting:
             slope = getattr(one.effect, law)
             if slope is not None:
-                known = dict(one.columns()) | {"pretension": self.machine.pretension}
-                found += slope(**{name: known[name] for name in signature(slope).parameters})
+                found += _asked(slope, one.columns(), pretension=self.machine.pretension)
         return found
 
     def thrifty(
@@ -319,6 +314,12 @@ class Task:
         state = np.zeros(self.states)
         state[0:6], state[6:12] = followed(self.driven, time_s, within_s)
         return state
+
+
+def _asked(law: Law, numbers: Mapping[str, Any], **more: Any) -> Any:
+    """What a law says of those of an effect's numbers, and of what else is known, that it takes."""
+    known = {**numbers, **more}
+    return law(**{name: known[name] for name in signature(law).parameters})
 
 
 def is_measurement(effect: ActiveEffect) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnosis.candidates import library_values
+from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.nuisances import Meaning
 from analysis.engine.diagnosis import Diagnosis

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnosis.candidates import candidates, library_values
+from analysis.diagnosis.candidates import candidates
 from analysis.diagnosis.crew import Crew
 from analysis.diagnosis.fineness import finer_steps
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
+from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording

@@ -83,6 +83,7 @@ class FollowedSearch(MoreLeader):
         self._enough = enough
         self._asked_of: set[tuple[str, ...]] = set()
         self._slips = False
+        self._foretold: tuple[Followed, Followed | None] | None = None
         self.ended = False
         """Whether something was enough."""
 
@@ -322,7 +323,12 @@ class FollowedSearch(MoreLeader):
         Where they are, it is what came as far as they were not: what grows of itself is followed
         on in any direction.
         """
-        best = self._best
+        if self._foretold is None or self._foretold[0] is not self._best:
+            self._foretold = self._best, self._clear_part(self._best)
+        return self._foretold[1]
+
+    def _clear_part(self, best: Followed) -> Followed | None:
+        """So much of the time as it foretells to little more than noise, if that is enough."""
         if best.about is not None and best.strain >= FAR:
             best = replace(best.about, share=best.about.telling)
         told = best.state is not None and best.share < 1.0 and best.strain < FAR

@@ -15,7 +15,8 @@ from analysis.challenge.plant.pulley import straight, wrapped
 from analysis.challenge.plant.record import Measured, Sensing, measure
 from analysis.challenge.plant.sensors import KNEE_N, CellFault, Faults, read_cells
 from analysis.challenge.truth import drawn_offset
-from analysis.diagnosis.candidates import candidates, library_values
+from analysis.diagnosis.candidates import candidates
+from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.sighting import Sighting
 from analysis.engine.system import Setting
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
