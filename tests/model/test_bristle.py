@@ -1,8 +1,118 @@
-"""The bristle by which friction sticks, against LuGre's own law."""
+"""The bristle by which friction sticks, and the smooth laws beside it."""
 
 import numpy as np
+import pytest
 
+from cdpr8.rigfile import Excitation, load_rig, packaged_rig_path
+from model import ActiveEffect, simulate
 from model.library.bristle import bent, held
+from model.library.discovery import library
+from model.library.smooth import gaussian
+from tests.model.harness import cable_response
+
+FRICTIONS = ("pulley_coulomb", "pulley_capstan", "pulley_stribeck", "pulley_presliding")
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_below_its_own_length_friction_is_a_spring_that_loses_little(name: str) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 0.02 * numbers["presliding_m"]
+    stuck = cable_response(effect, {"bristle_loss_s": 1e-5}, amplitude_m)
+    assert stuck.in_phase[1] > 20.0 * abs(stuck.quadrature[1])
+    # A spring's force goes with the way, whatever the speed.
+    fast = cable_response(effect, {"bristle_loss_s": 1e-5}, amplitude_m, 20.0)
+    assert fast.in_phase[1] == pytest.approx(stuck.in_phase[1], rel=0.02)
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_the_loss_of_a_bristle_goes_with_the_speed_while_it_sticks(name: str) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 0.02 * numbers["presliding_m"]
+    calm = cable_response(effect, {"bristle_loss_s": 1e-5}, amplitude_m, 10.0)
+    lossy = cable_response(effect, {"bristle_loss_s": 2e-3}, amplitude_m, 10.0)
+    more = lossy.quadrature[1] - calm.quadrature[1]
+    assert more == pytest.approx(2.0 * np.pi * 10.0 * 2e-3 * calm.in_phase[1], rel=0.05)
+
+
+def test_stribecks_curve_is_the_static_force_at_first_and_the_sliding_one_at_last() -> None:
+    effect = library()["pulley_stribeck"]
+    creeping = cable_response(effect, {"presliding_m": 2e-5}, 2e-4, 0.5)
+    assert np.abs(creeping.force).max() == pytest.approx(1.4 * 0.3, rel=0.03)
+    sliding = cable_response(effect, {"presliding_m": 2e-5}, 5e-3, 8.0)
+    fastest = np.argmax(np.abs(sliding.rate))
+    assert abs(sliding.force[fastest]) == pytest.approx(0.3, rel=0.02)
+
+
+def test_gaussian_is_what_it_says_and_never_overflows() -> None:
+    x = np.linspace(-6.0, 6.0, 2001)
+    assert np.abs(gaussian(x) - np.exp(-x * x)).max() < 1e-4
+    assert gaussian(1e100) < 1e-100
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_the_default_steps_follow_a_reversal_far_closer_than_a_cell_sees(name: str) -> None:
+    rig = load_rig(packaged_rig_path())
+    moved = rig.excitation.model_copy(update={"motion_s": 1.5})
+    on = [ActiveEffect(name)]
+    usual, close = (
+        simulate(rig, excitation=moved, effects=on, output_rate_hz=333.0, step_s=step_s)
+        for step_s in (None, 1.5e-4)
+    )
+    off = usual.tension_n - close.tension_n
+    # A cell's noise is some 5 mN.
+    assert float(np.sqrt(np.mean(off**2))) < 1e-3
+
+
+@pytest.mark.parametrize("method", ["dp5", "dop853"])
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_the_shortest_bristle_of_a_weak_friction_is_followed_however_fast_cables_slip(
+    name: str, method: str
+) -> None:
+    rig = load_rig(packaged_rig_path())
+    # Up to 0.3 m/s: it turns over as quickly as it ever does.
+    moved = rig.excitation.model_copy(update={"motion_s": 1.5, "amplitude_deg": 5.0})
+    effect = library()[name]
+    shortest = next(one.low for one in effect.parameters if one.name == "presliding_m")
+    (magnitude,) = (one for one in effect.parameters if one.magnitude)
+    weak = {magnitude.name: [0.03 * magnitude.default] * 8, "presliding_m": shortest}
+    usual, close = (
+        simulate(
+            rig, excitation=moved, effects=[ActiveEffect(name, weak)],
+            output_rate_hz=333.0, method=method, step_s=step_s,
+        )
+        for step_s in (None, 1.5e-4)
+    )  # fmt: skip
+    off = usual.tension_n - close.tension_n
+    assert float(np.sqrt(np.mean(off**2))) < 1e-3
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+@pytest.mark.parametrize("bent", [-0.6, 0.8])
+def test_what_a_bristle_held_at_rest_is_missing_once_it_has_turned_over(
+    name: str, bent: float
+) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 20.0 * numbers["presliding_m"]
+    plain = cable_response(effect, {}, amplitude_m)
+    left = cable_response(effect, {"bent_at_rest": bent}, amplitude_m)
+    slides = 0.5 * (plain.force.max() - plain.force.min())
+    level = 1.0 if name != "pulley_stribeck" else 1.0 / numbers["static_ratio"]
+    assert plain.mean - left.mean == pytest.approx(bent * level * slides, rel=0.15)
+    assert left.force - left.mean == pytest.approx(plain.force - plain.mean, abs=0.02 * slides)
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_a_bristle_bent_at_rest_holds_nothing_beside_the_pretension(name: str) -> None:
+    effect = ActiveEffect(name, {"bent_at_rest": 0.7})
+    rig = load_rig(packaged_rig_path())
+    still = Excitation(rest_s=0.5, motion_s=0.1, ramp_s=0.05)
+    found = simulate(rig, excitation=still, effects=[effect])
+    at_rest = found.t_s < 0.4
+    drift = found.tension_n[at_rest] - found.tension_n[0]
+    assert np.abs(drift).max() < 0.01 * 0.7 * 0.3
 
 
 def test_friction_that_slips_is_what_a_bristle_without_delay_holds() -> None:
