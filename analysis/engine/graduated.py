@@ -57,15 +57,18 @@ def graduated(samples: Samples, guess: Guess, most: float = np.inf) -> Followed:
     Returns
     -------
     Followed
-        From where the ring is to be followed, and what is left there up to `STRETCH`.
+        From where the ring is to be followed, and what is left there up to `STRETCH`: of a sample,
+        with its share of what parameters cost, for a wrong law may bend them a long way.
     """
     at, known = Followed(guess.nuisance, guess.state), as_told(guess)
+    way, count = Way(samples, at), int((samples.shares <= STRETCH).sum())
     for times in HELD:
-        way = Way(samples, at, None, known._replace(information=times * known.information))
+        way.hold(known._replace(information=times * known.information))
         for _ in range(STEPS):
             if not way.step(STRETCH, lost=np.inf):
                 break
-        at = replace(way.at, share=STRETCH, left=way.left(STRETCH))
+        left = way.left(STRETCH) + way.at.strain / max(count, 1)
+        at = replace(way.at, share=STRETCH, left=left)
         if times <= FAR_OFF[0] and at.left > FAR_OFF[1] * most:
             break
     return at

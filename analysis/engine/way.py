@@ -58,8 +58,9 @@ STRAIGHT = 0.5
 differences hold: what everything does is simulated anew."""
 
 RENEWED = 4
-"""Then, where what parameters do was lent by another hypothesis, it is what is on that is simulated
-anew, so many times."""
+"""Then it is what is on that is simulated anew, so many times, before everything is: a law curves,
+and what parameters do about it stays nearly what it was. Where that was lent by another hypothesis,
+what is on is told anew as often."""
 
 
 class Way:
@@ -95,7 +96,13 @@ class Way:
         self._fresh = False
         self._steps = np.zeros(0)
         self._settled = False
-        self._lent, self._serves, self._renewed = lent, False, 0
+        self._lent, self._serves = lent, False
+        self._kept: Array | None = None
+        self._renewed = 0
+
+    def hold(self, known: Known) -> None:
+        """From here on something else is known of free numbers."""
+        self._known, self._settled = known, False
 
     def window(self, passed: float) -> float:
         """Up to which share of the time to go next, as far as the ring is not lost.
@@ -114,7 +121,8 @@ class Way:
             farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < AT_ONCE)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
-            self.here, self._seen, self._columns, self._last = whole, share, None, None
+            self.here = whole
+            self._see(share)
         while share - passed > NARROWEST and self.left(share) > REACH:
             share = 0.5 * (passed + share)
         return share
@@ -123,8 +131,12 @@ class Way:
         """Simulate up to a share of the time, if that was not done."""
         if share > self._seen:
             (self.here,) = self._samples.residuals([self.at.point], share)
-            self._seen, self._columns, self._last = share, None, None
+            self._see(share)
             self._settled = False
+
+    def _see(self, share: float) -> None:
+        """What numbers do is not known over so much of the time."""
+        self._seen, self._columns, self._last, self._kept = share, None, None, None
 
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
@@ -187,12 +199,14 @@ class Way:
         return self.step(share, lost, best)
 
     def _differences(self) -> None:
-        """What every number does here; where nuisances' was lent, only what is on is simulated."""
-        columns = np.zeros((0, len(self.here)))
+        """What every number does here; where nuisances' was lent or kept, only what is on does."""
         self._serves = self._lent is not None and self._seen == 1.0
-        if self._lent is not None and self._serves:
-            columns, self._lent = self._lent.copy(), None
-        self._fresh = len(columns) == 0
+        if self._serves:
+            self._kept, self._lent = self._lent, None
+        columns = np.zeros((0, len(self.here))) if self._kept is None else self._kept
+        self._kept, self._fresh = None, len(columns) == 0
+        if self._fresh:
+            self._renewed = 0
         own, self._steps = differences(
             self._samples, self.at, self.here, self._seen, known=len(columns)
         )
@@ -214,13 +228,20 @@ class Way:
             return 0.0
         self._learn(found.there, found.residual)
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
-            if self._serves and self._renewed < RENEWED:
-                self._lent = self._columns[: len(self.at.nuisance)]
-                self._renewed += 1
-            else:
-                self._serves = False
-            self._columns = None
+            self._keep(found.fell)
         return found.fell
+
+    def _keep(self, fell: float) -> None:
+        """Differences do not hold here: let go of them, but for nuisances' where those may stay."""
+        assert self._columns is not None
+        nuisances, self._columns = self._columns[: len(self.at.nuisance)], None
+        if self._renewed >= RENEWED or self.at.state is None:
+            self._serves = False
+        elif self._serves:
+            self._lent = nuisances
+        elif fell >= WORTH_ANEW:
+            self._kept = nuisances
+        self._renewed += 1
 
     def _learn(self, there: Followed, found: Array) -> None:
         """Go there, and let what was found correct the differences (Broyden 1965)."""

@@ -58,16 +58,16 @@ class Sticking:
 
     def _one(self, point: Point) -> Array:
         on, soft = point.effects.get("stuck"), point.effects.get("soft")
-        size = 0.2 if on is None else 0.5
+        second = 0.02 if on is None else 0.0
         on = on or soft
         force = on.values.get("force@1", 0.0) if on else 0.0
         bent = on.shapes.get("bent@1", 0.0) if on else 0.0
         since = np.maximum(T_S - START_S, 0.0)
         hertz = TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]) + 0.3 * force * bent)
         shift = force * (1.0 - bent) * (T_S > START_S)
-        return np.asarray(
-            ((1.0 + size * force) * np.sin(2.0 * np.pi * hertz * since) + shift)[:, None]
-        )
+        turned = 2.0 * np.pi * hertz * since
+        ring = (1.0 + 0.5 * force) * np.sin(turned) + second * force * np.sin(2.0 * turned)
+        return np.asarray((ring + shift)[:, None])
 
 
 def state_of(force: float, bent: float, name: str = "stuck") -> State:
