@@ -35,6 +35,10 @@ DRIVES = ("wrench", "winch")
 THRIFTY = ("dop853", "dp5")
 """Methods that a fit chooses from."""
 
+ALMOST = 1.05
+"""In a fit what sticks may turn in a step by so much more: steps are whole parts of a row, and one
+that is a little too long for three would else become one for two."""
+
 
 @dataclass(frozen=True)
 class Disturbance:
@@ -174,7 +178,8 @@ class Task:
         decay = self._fastest_decay_1_per_s
         of_decay_s = max(method.stable / decay, SHORTEST_STEP_S) if decay > 0.0 else np.inf
         stuck = self._stuck_rad_per_s
-        of_stuck_s = max(method.turn_rad / stuck, SHORTEST_STEP_S) if stuck > 0.0 else np.inf
+        turn_rad = method.turn_rad * (ALMOST if thrifty else 1.0)
+        of_stuck_s = max(turn_rad / stuck, SHORTEST_STEP_S) if stuck > 0.0 else np.inf
         switches = [one.effect.longest_step_s or np.inf for one in self.acting]
         return float(min([of_tones_s, of_decay_s, of_stuck_s, *switches]))
 
