@@ -79,7 +79,7 @@ def diagnose(
     if figures and result.pictures is not None:
         from analysis.diagnosis.figures import write_figures
 
-        write_figures(result.statement, result.pictures, folder)
+        write_figures(result.statement, result.pictures, folder, workers)
     for text in result.statement["notes"]:
         note(f"note: {text}")
     if as_json:

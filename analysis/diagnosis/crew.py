@@ -55,8 +55,8 @@ class Crew(Generic[Work, Done]):
         With this one.
     """
 
-    asked_s: ClassVar[float] = -math.inf
-    """When any crew last asked anything of others, on the monotonic clock."""
+    answered_s: ClassVar[float] = -math.inf
+    """When others last answered any crew, on the monotonic clock."""
 
     def __init__(self, worker: Worker[Work, Done], processes: int) -> None:
         self._worker = worker
@@ -83,17 +83,21 @@ class Crew(Generic[Work, Done]):
                 # A process that the system ended takes nothing with it: its part is done here.
                 self._others = 0
                 done = [self._worker.do(work[i]) for i in stripe]
+            else:
+                Crew.answered_s = time.monotonic()
             found.update(zip(stripe, done, strict=True))
         return [found[i] for i in range(len(work))]
 
     def _stripes(self, work: Sequence[Work]) -> tuple[range, list[range]]:
         """Which pieces this process does, and the others: none, until they are ready."""
         processes, count = self._others + 1, len(work)
-        awake = time.monotonic() - Crew.asked_s < AWAKE_S
+        awake = time.monotonic() - Crew.answered_s < AWAKE_S
         if processes == 1 or count < 2 or (self._seen < FEW and not awake):
             return range(count), []
         if self._path is None:
-            self._copy(work[0])
+            self._copy()
+            if not awake:
+                self._start(work[0])
         if not all(one.done() for one in self._ready):
             return range(count), []
         if any(one.exception() is not None for one in self._ready):
@@ -102,21 +106,23 @@ class Crew(Generic[Work, Done]):
         first, *others = (range(i, count, processes) for i in range(processes))
         return first, [one for one in others if one]
 
-    def _copy(self, work: Work) -> None:
-        """Start the others, each with a piece of work that is only to make it ready."""
+    def _copy(self) -> None:
+        """Leave the worker where the others find it."""
         with NamedTemporaryFile(prefix="cdpr8-", suffix=".pickle", delete=False) as file:
             pickle.dump(self._worker, file)
         self._path = Path(file.name)
         finalize(self, self._path.unlink, missing_ok=True)
+
+    def _start(self, work: Work) -> None:
+        """Start the others, each with a piece of work that is only to make it ready."""
         # One that has grown is replaced, which nobody has to know.
         warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
         executor = self._executor()
-        self._ready = [executor.submit(_do, file.name, [work]) for _ in range(self._others)]
+        self._ready = [executor.submit(_do, str(self._path), [work]) for _ in range(self._others)]
 
     def _executor(self) -> Any:
         from loky import get_reusable_executor
 
-        Crew.asked_s = time.monotonic()
         return get_reusable_executor(max_workers=self._others, timeout=IDLE_S, initializer=_serve)
 
 

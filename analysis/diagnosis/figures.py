@@ -1,11 +1,13 @@
 """The figures of a diagnosis, drawn from what it left in the results folder."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from analysis.diagnosis.crew import Crew
 from analysis.diagnosis.figure_fit import fit, improvement
 from analysis.diagnosis.figure_loops import loops, speeds
 from analysis.diagnosis.figure_maps import residual_map
@@ -52,7 +54,9 @@ def _of_runs(said: Mapping[str, Any], pictures: Pictures) -> Iterator[tuple[str,
         yield f"fit{after}", partial(fit, pictures, run.name)
 
 
-def write_figures(said: Mapping[str, Any], pictures: Pictures, folder: Path) -> list[Path]:
+def write_figures(
+    said: Mapping[str, Any], pictures: Pictures, folder: Path, workers: int = 1
+) -> list[Path]:
     """Write every figure as PNG and SVG.
 
     Parameters
@@ -61,6 +65,8 @@ def write_figures(said: Mapping[str, Any], pictures: Pictures, folder: Path) -> 
         What to draw.
     folder
         Where; made if absent.
+    workers
+        Processes.
 
     Returns
     -------
@@ -68,22 +74,43 @@ def write_figures(said: Mapping[str, Any], pictures: Pictures, folder: Path) -> 
         The files.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    names = [name for name, _ in drawings(said, pictures)]
+    crew: Crew[str, dict[str, bytes]] = Crew(_Drawer(said, pictures), workers)
     written = []
-    for name, draw in drawings(said, pictures):
-        for ending in ("png", "svg"):
+    for name, files in zip(names, crew.do(names), strict=True):
+        for ending, content in files.items():
             path = folder / f"diagnose_{name}.{ending}"
-            path.write_bytes(drawn(draw, LIGHT, ending))
+            path.write_bytes(content)
             written.append(path)
     return written
 
 
-def drawn(draw: Draw, look: Look, ending: str = "png", dpi: int = 150) -> bytes:
-    """One figure as a file's bytes."""
+@dataclass(frozen=True)
+class _Drawer:
+    """Draws figures of one diagnosis by their names."""
+
+    said: Mapping[str, Any]
+    pictures: Pictures
+
+    def do(self, work: str) -> dict[str, bytes]:
+        """Ending of a file -> its bytes."""
+        return drawn(dict(drawings(self.said, self.pictures))[work], LIGHT, ("png", "svg"))
+
+
+def drawn(
+    draw: Draw, look: Look, endings: Sequence[str] = ("png",), dpi: int = 150
+) -> dict[str, bytes]:
+    """One figure as files: ending -> bytes."""
     import matplotlib as mpl
 
-    buffer = BytesIO()
+    found = {}
     with mpl.rc_context(look.style):
         figure = draw(look)
-        metadata = {"Date": None} if ending == "svg" else None
-        figure.savefig(buffer, format=ending, dpi=dpi, metadata=metadata)
-    return buffer.getvalue()
+        for ending in endings:
+            buffer = BytesIO()
+            metadata = {"Date": None} if ending == "svg" else None
+            figure.savefig(buffer, format=ending, dpi=dpi, metadata=metadata)
+            # Laying it out takes as long as drawing it: the next file has it as it is.
+            figure.set_layout_engine("none")
+            found[ending] = buffer.getvalue()
+    return found

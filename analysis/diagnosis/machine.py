@@ -182,10 +182,12 @@ class RecordedMachine:
         alike = [together[key] for key in sorted(together, key=str)]
         count = sum(len(GUARDS[next(iter(places.values())).ring]) for places in alike)
         self.simulated += count
-        # As many for each process, and each about as long.
+        # As many for each process, and each about as long, but no more than there are lanes.
         parts = self._rounds(count) * self._workers
         cost = np.array([1.0 + LOOKING * (len(places) - 1) for places in alike])
         part = (np.cumsum(cost) - 0.5 * cost) * parts // cost.sum()
+        if np.bincount(part.astype(int)).max() > GROUP:
+            part = np.arange(len(alike)) * parts // len(alike)
         shares = []
         for number in range(parts):
             chosen = [alike[i] for i in np.flatnonzero(part == number)]

@@ -67,8 +67,10 @@ def figure(name: str, draw: Draw, alt: str) -> str:
         (PHONE, replace(LIGHT, narrow=True)),
         (NIGHT, DARK),
     ):
-        sources.append(f'<source media="{media}" srcset="{_data(drawn(draw, look, dpi=DPI))}">')
-    image = _data(drawn(draw, LIGHT, dpi=DPI))
+        sources.append(
+            f'<source media="{media}" srcset="{_data(drawn(draw, look, dpi=DPI)["png"])}">'
+        )
+    image = _data(drawn(draw, LIGHT, dpi=DPI)["png"])
     caption = CAPTIONS.get(kind_of(name), "")
     return (
         f'<figure id="{escape(name)}"><picture>{"".join(sources)}'

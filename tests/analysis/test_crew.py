@@ -90,7 +90,7 @@ def _is_there(process: int) -> bool:
 
 
 def test_little_work_starts_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(crew.Crew, "asked_s", -math.inf)
+    monkeypatch.setattr(crew.Crew, "answered_s", -math.inf)
     team: Crew[int, tuple[int, int]] = Crew(Squarer(0), 2)
     found = team.do(range(crew.FEW - 1))
     assert {process for _, process in found} == {os.getpid()}

@@ -29,7 +29,7 @@ def test_all_of_them_are_there() -> None:
 def test_each_is_drawn_in_its_colours_and_width(name: str, look: Look) -> None:
     from matplotlib.image import imread
 
-    image = imread(BytesIO(drawn(dict(drawings(statement(), pictures()))[name], look)))
+    image = imread(BytesIO(drawn(dict(drawings(statement(), pictures()))[name], look)["png"]))
     assert image.shape[1] == pytest.approx(150 * look.width, abs=1)
     paper = [int(look.paper[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
     assert np.allclose(image[-1, -1, :3], paper, atol=0.01)
@@ -40,7 +40,7 @@ def test_nothing_named_has_nothing_after() -> None:
     unnamed = replace(pictures(), named=False)
     said = statement("none", [])
     for name, draw in drawings(said, unnamed):
-        assert drawn(draw, LIGHT), name
+        assert drawn(draw, LIGHT)["png"], name
 
 
 def test_friction_stands_out_by_phase_as_a_square_and_is_gone_after() -> None:
