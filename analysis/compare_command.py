@@ -28,6 +28,7 @@ def compare(
     from analysis.compare import compare as compare_run
     from analysis.comparison_table import as_dictionary, frequency_table, table, verdict
     from analysis.tracking import poses_of
+    from cdpr8.crew import USUAL
     from cdpr8.rigfile import load_rig
     from cdpr8.runfolder import find_run, load_run, results_folder
     from model import compile_solver
@@ -38,7 +39,7 @@ def compare(
     if recorded.pose is None and recorded.video is not None:
         note(f"{recorded.name} has no pose.csv: tracking its video")
     with progress("tracking", len(recorded.frames)) as step:
-        poses = poses_of(recorded, noticed, step)
+        poses = poses_of(recorded, noticed, step, USUAL)
     compile_solver(note)
     comparison = compare_run(recorded, poses, chosen, rig_name=str(rig), notes=noticed, seed=seed)
     results = results_folder(recorded.folder)

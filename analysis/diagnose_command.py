@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cdpr8.crew import USUAL
 from cdpr8.terminal import note, progress, say, say_json, say_table, stages
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def diagnose(
         str | None, typer.Option(help="consider these only, with commas between")
     ] = None,
     figures: Annotated[bool, typer.Option(help="draw figures into the results folder")] = True,
-    workers: Annotated[int, typer.Option(min=1, help="processes")] = 2,
+    workers: Annotated[int, typer.Option(min=1, help="processes")] = USUAL,
 ) -> None:
     """Find out what physics the simulation left out, and show that the fit improves.
 
@@ -68,7 +69,7 @@ def diagnose(
     chosen = _effects(effects)
     machine = load_rig(rig) if rig is not None else None
     folders = [find_run(name) for name in runs]
-    recordings = _recordings(folders, machine)
+    recordings = _recordings(folders, machine, workers)
     compile_solver(note)
     folder = results_folder(recordings[0].run.folder)
     result = run_diagnosis(
@@ -112,7 +113,7 @@ def _effects(asked: str | None) -> list[str] | None:
     return names
 
 
-def _recordings(folders: Sequence[Path], machine: object) -> "tuple[Recording, ...]":
+def _recordings(folders: Sequence[Path], machine: object, workers: int) -> "tuple[Recording, ...]":
     """Load, and track where there are no poses yet."""
     from analysis.diagnosis.prepare import prepare
     from cdpr8.rigfile import Rig
@@ -123,7 +124,8 @@ def _recordings(folders: Sequence[Path], machine: object) -> "tuple[Recording, .
     for run in untracked:
         note(f"{run.name} has no pose.csv: tracking its video")
     with progress("tracking", sum(len(run.frames) for run in untracked) or None) as step:
-        return prepare(folders, rig=machine if isinstance(machine, Rig) else None, step=step)
+        known = machine if isinstance(machine, Rig) else None
+        return prepare(folders, rig=known, step=step, workers=workers)
 
 
 def run_diagnosis(

@@ -11,7 +11,10 @@ if TYPE_CHECKING:
 
 
 def poses_of(
-    run: Run, notes: list[str] | None = None, step: Callable[[], None] | None = None
+    run: Run,
+    notes: list[str] | None = None,
+    step: Callable[[], None] | None = None,
+    workers: int = 1,
 ) -> "pd.DataFrame":
     """Columns of pose.csv for a run.
 
@@ -23,6 +26,8 @@ def poses_of(
         Takes what a user must know, where the video is tracked.
     step
         Called once a frame that is tracked.
+    workers
+        Processes.
 
     Raises
     ------
@@ -41,4 +46,4 @@ def poses_of(
         )
     from vision import track_run
 
-    return track_run(run, notes=notes, step=step)
+    return track_run(run, notes=notes, step=step, workers=workers)

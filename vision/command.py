@@ -146,6 +146,7 @@ def _track_run(
     out: Path | None,
     notes: list[str],
 ) -> tuple["pd.DataFrame", Path]:
+    from cdpr8.crew import USUAL
     from cdpr8.rigfile.load import load_rig
     from cdpr8.runfolder.find import find_run
     from cdpr8.runfolder.read import load_run
@@ -157,7 +158,9 @@ def _track_run(
     notes += run.notes
     rig: Rig | None = load_rig(rig_file) if rig_file else None
     with progress("tracking", len(run.frames) or None) as step:
-        poses = track_run(run, rig=rig, refinement=refinement, step=step, notes=notes, **options)
+        poses = track_run(
+            run, rig=rig, refinement=refinement, step=step, notes=notes, workers=USUAL, **options
+        )
     written = out or _pose_file(run.folder)
     write_poses(poses, POSE, written)
     return poses, written

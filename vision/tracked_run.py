@@ -1,6 +1,6 @@
 """A run to poses of the platform in O-XYZ: its frames tracked, the camera and plate as mounted."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -19,6 +19,7 @@ from vision.self_calibration import PlateView, calibrate_plate, spread_out
 from vision.sequence import TimedSighting, at_rows_of_plate, settled
 from vision.tables import Row, as_frame, common_cells, platform_cells
 from vision.tracker import Sighting, Tracker
+from vision.watched import watch
 from vision.zero import with_camera_from_rest, with_camera_from_still
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def track_run(
     row_delay_s: float | None = None,
     step: Callable[[], None] | None = None,
     notes: list[str] | None = None,
+    workers: int = 1,
 ) -> "pd.DataFrame":
     """Pose of the platform in every frame of a run.
 
@@ -70,6 +72,8 @@ def track_run(
         Called once a frame.
     notes
         Takes what a user must know.
+    workers
+        Processes.
 
     Returns
     -------
@@ -86,11 +90,11 @@ def track_run(
     camera, plate = camera_and_plate(run, rig)
     if self_calibrate:
         plate = _calibrated(run, plate, camera, refinement, notes)
-    seen = _seen_in(run, Tracker(camera, plate, refinement), camera, step, notes)
+    seen = _seen_in(run, Tracker(camera, plate, refinement), step, notes, workers)
     still = None
     if isinstance(zero, Run):
         tracker = Tracker(camera, plate, refinement)
-        still = _Still(zero, _seen_in(zero, tracker, camera, None, notes))
+        still = _Still(zero, _seen_in(zero, tracker, None, notes))
     machine = rig or run.rig
     if row_delay_s is None:
         row_delay_s = machine.camera.row_delay_s if machine.camera else 0.0
@@ -199,49 +203,32 @@ def _platform_poses(
 def _seen_in(
     run: Run,
     tracker: Tracker,
-    camera: CameraModel,
     step: Callable[[], None] | None,
     notes: list[str],
+    workers: int = 1,
 ) -> list[TimedSighting]:
     """Every frame of a run, the branches chosen with all frames known."""
     assert run.video is not None
-    seen = list(_frames(run, tracker, camera, step, notes))
-    return settled(seen, tracker, run.video)
-
-
-def _frames(
-    run: Run,
-    tracker: Tracker,
-    camera: CameraModel,
-    step: Callable[[], None] | None,
-    notes: list[str],
-) -> Iterator[TimedSighting]:
-    """What is seen in each frame that frames.csv and the video both have."""
-    assert run.video is not None
     table = run.frames
     rows = list(zip(table["frame"], table["t_s"], table["flags"], strict=True))
-    stamped = len(rows) > 0
-    count = 0
-    for image, stamp in read_video(run.video):
-        camera.check_size(image, str(run.video))
-        count += 1
-        if stamped and count > len(rows):
-            continue
-        if stamped:
-            frame, t_s, flags = rows[count - 1]
-        else:
-            frame, t_s, flags = count - 1, float("nan") if stamp is None else stamp, 0
-        sighting = tracker.see(image).sightings[0]
-        yield TimedSighting(int(frame), float(t_s), FrameFlag(int(flags)), sighting)
-        if step:
-            step()
-    if not stamped:
+    watched = watch(run.video, tracker, len(rows) or None, workers, step)
+    if not rows:
         notes.append("frames.csv has no rows: times are those of video.mkv, rounded to 1 ms")
-    elif count != len(rows):
+        nowhere = float("nan")
+        rows = [
+            (number, nowhere if stamp is None else stamp, 0)
+            for number, stamp in enumerate(watched.stamps)
+        ]
+    elif watched.count != len(rows):
         notes.append(
-            f"video.mkv has {count} whole frames and frames.csv {len(rows)} rows (an interrupted "
-            f"run?): the {min(count, len(rows))} that both have are tracked"
+            f"video.mkv has {watched.count} whole frames and frames.csv {len(rows)} rows (an "
+            f"interrupted run?): the {min(watched.count, len(rows))} that both have are tracked"
         )
+    seen = [
+        TimedSighting(int(frame), float(t_s), FrameFlag(int(flags)), sighting)
+        for (frame, t_s, flags), sighting in zip(rows, watched.sightings, strict=False)
+    ]
+    return settled(seen, tracker, run.video)
 
 
 def _calibrated(

@@ -6,6 +6,7 @@ the last picture, which shows a repeated one.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +91,8 @@ class Tracker:
 
     Attributes
     ----------
+    camera
+        That took the video.
     board
         What is followed.
     ids_seen
@@ -103,13 +106,21 @@ class Tracker:
     ) -> None:
         self.ids_seen: set[int] = set()
         self.searches = 0
-        self._camera = camera
+        self.camera = camera
         self.board = board
         usual = Refinement.PHOTOMETRIC if isinstance(board, Plate) else Refinement.CORNERS
         self._refinement = refinement or usual
         self._detector = MarkerDetector(board.dictionary)
         self._followers: dict[int | None, _Follower] = {}
         self._last: Image | None = None
+
+    def __reduce__(self) -> tuple[type["Tracker"], tuple[Any, ...]]:
+        """A copy in another process has seen nothing."""
+        return Tracker, (self.camera, self.board, self._refinement)
+
+    def anew(self) -> "Tracker":
+        """One that follows the same, and has seen nothing."""
+        return Tracker(self.camera, self.board, self._refinement)
 
     def see(self, image: Image) -> TrackedFrame:
         """Take the next frame.
@@ -124,11 +135,11 @@ class Tracker:
         if isinstance(board, Plate):
             follower = self._follower(None, board)
             found = self._find(image, follower, board)
-            corners = refine_corners(image, found, self._camera, self._detector.modules)
+            corners = refine_corners(image, found, self.camera, self._detector.modules)
             return TrackedFrame((follower.follow(image, corners, flags),))
         found = self._search(image)
         wanted = found.of(tuple(filter(board.wants, found.ids)))
-        corners = refine_corners(image, wanted, self._camera, self._detector.modules)
+        corners = refine_corners(image, wanted, self.camera, self._detector.modules)
         sightings = [
             self._follower(marker, board.plate_of(marker)).follow(
                 image, _one(corners, index), flags
@@ -143,14 +154,14 @@ class Tracker:
     def _follower(self, marker: int | None, plate: Plate) -> "_Follower":
         if marker not in self._followers:
             self._followers[marker] = _Follower(
-                marker, plate, self._camera, self._refinement, self._detector.modules
+                marker, plate, self.camera, self._refinement, self._detector.modules
             )
         return self._followers[marker]
 
     def _find(self, image: Image, follower: "_Follower", plate: Plate) -> Markers:
         """Markers of the plate: where it must be by now, else anywhere."""
         region = follower.region()
-        if region is not None and region.smaller_than_half(self._camera):
+        if region is not None and region.smaller_than_half(self.camera):
             found = detect_in(image, region, self._detector).of(plate.ids)
             if found.ids and len(found.ids) >= follower.markers:
                 return found

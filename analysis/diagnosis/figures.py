@@ -7,7 +7,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from analysis.diagnosis.crew import Crew
 from analysis.diagnosis.figure_fit import fit, improvement
 from analysis.diagnosis.figure_loops import loops, speeds
 from analysis.diagnosis.figure_maps import residual_map
@@ -16,6 +15,7 @@ from analysis.diagnosis.figure_states import states
 from analysis.diagnosis.figure_story import story
 from analysis.diagnosis.figure_style import LIGHT, Look
 from analysis.diagnosis.pictures import Pictures
+from cdpr8.crew import Crew
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.diagnosis.candidates import candidates
-from analysis.diagnosis.crew import Crew
 from analysis.diagnosis.fineness import finer_steps
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.library_values import library_values
@@ -19,6 +18,7 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.diagnosis.sighting import sighting_of
 from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
+from cdpr8.crew import Crew
 from model import Simulation, Task, simulate_many
 from model.library.discovery import library
 from model.motion import RampedSine

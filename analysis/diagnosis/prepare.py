@@ -22,6 +22,7 @@ def prepare(
     *,
     rig: Rig | None = None,
     step: Callable[[], None] | None = None,
+    workers: int = 1,
 ) -> tuple[Recording, ...]:
     """Load runs of one machine.
 
@@ -33,6 +34,8 @@ def prepare(
         The machine, where it is not the runs' own: each run keeps its own pretensions.
     step
         Called once a frame that is tracked.
+    workers
+        Processes.
 
     Raises
     ------
@@ -55,15 +58,15 @@ def prepare(
             allowed="folders of different names",
             remedy="rename one: what is found is told by the run's name",
         )
-    return tuple(_prepare(run, rig, step) for run in runs)
+    return tuple(_prepare(run, rig, step, workers) for run in runs)
 
 
-def _prepare(run: Run, rig: Rig | None, step: Callable[[], None] | None) -> Recording:
+def _prepare(run: Run, rig: Rig | None, step: Callable[[], None] | None, workers: int) -> Recording:
     if rig is not None:
         run = replace(run, rig=_with_pretensions_of(run.rig, rig))
     notes: list[str] = []
     try:
-        pose = poses_of(run, notes, step)
+        pose = poses_of(run, notes, step, workers)
     except DataError:
         pose = None
     shift = 0.0

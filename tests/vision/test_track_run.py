@@ -1,6 +1,7 @@
 """`vision track RUN`: accuracy on rendered runs, and what odd frames become."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from takes import FPS, PITCH_DEG, PITCH_HZ, REST_S, film, still, write_run
 
@@ -58,6 +59,19 @@ def test_sigmas_and_correlations_are_those_of_the_errors(poses, take):
     columns = [column for column in poses.columns if column.startswith("corr_")]
     assert len(columns) == 15
     assert poses[columns].abs().to_numpy().max() <= 1.0
+
+
+def test_two_processes_see_what_one_sees(take, packaged_text, tmp_path, monkeypatch):
+    images = list(take.images)
+    images[40] = images[39].copy()  # repeated just where the second process begins
+    run = load_run(write_run(tmp_path / "halves", take, packaged_text, images))
+    alone = track_run(run)
+    monkeypatch.setattr("vision.watched.LEAST", 40)
+    steps: list[int] = []
+    together = track_run(run, workers=2, step=lambda: steps.append(1))
+    pd.testing.assert_frame_equal(together, alone, check_exact=True)
+    assert FrameFlag(int(together["flags"][40])) == FrameFlag.REPEATED
+    assert len(steps) == len(images)
 
 
 def test_odd_frames_are_flagged_and_their_neighbours_unharmed(

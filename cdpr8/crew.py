@@ -1,4 +1,4 @@
-"""Processes that simulate beside this one: most of a simulation's time here is Python's."""
+"""Processes that work beside this one: what takes long here is mostly Python's own."""
 
 import math
 import os
@@ -21,6 +21,9 @@ Work = TypeVar("Work")
 Done = TypeVar("Done")
 Work_contra = TypeVar("Work_contra", contravariant=True)
 Done_co = TypeVar("Done_co", covariant=True)
+
+USUAL = 2
+"""Processes of a command that is not told how many."""
 
 IDLE_S = 60.0
 """A process that had nothing to do for so long ends."""
@@ -53,14 +56,17 @@ class Crew(Generic[Work, Done]):
         Is copied when the others are first wanted: what it is must not change after that.
     processes
         With this one.
+    long
+        Each piece of work takes longer than a process needs to start: the others begin at once.
     """
 
     answered_s: ClassVar[float] = -math.inf
     """When others last answered any crew, on the monotonic clock."""
 
-    def __init__(self, worker: Worker[Work, Done], processes: int) -> None:
+    def __init__(self, worker: Worker[Work, Done], processes: int, *, long: bool = False) -> None:
         self._worker = worker
         self._others = processes - 1
+        self._long = long
         self._seen = 0
         self._path: Path | None = None
         self._ready: list[Future[Any]] = []
@@ -91,7 +97,7 @@ class Crew(Generic[Work, Done]):
     def _stripes(self, work: Sequence[Work]) -> tuple[range, list[range]]:
         """Which pieces this process does, and the others: none, until they are ready."""
         processes, count = self._others + 1, len(work)
-        awake = time.monotonic() - Crew.answered_s < AWAKE_S
+        awake = self._long or time.monotonic() - Crew.answered_s < AWAKE_S
         if processes == 1 or count < 2 or (self._seen < FEW and not awake):
             return range(count), []
         if self._path is None:

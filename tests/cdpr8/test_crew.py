@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.diagnosis import crew
-from analysis.diagnosis.crew import Crew
+from cdpr8 import crew
+from cdpr8.crew import Crew
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ def test_what_a_killed_process_had_to_do_is_done_here() -> None:
 ASKS = """
 import os, sys, time
 sys.path.insert(0, {root!r})
-from analysis.diagnosis.crew import Crew
-from tests.analysis.test_crew import Squarer
+from cdpr8.crew import Crew
+from tests.cdpr8.test_crew import Squarer
 team = Crew(Squarer(0), 2)
 others = set()
 while not others:
