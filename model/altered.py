@@ -33,6 +33,11 @@ class _Imperfect:
         return self.motion.start_s
 
     @property
+    def disturbed_s(self) -> float:
+        """When X_p0 and X_w0 act."""
+        return self.motion.disturbed_s
+
+    @property
     def duration_s(self) -> float:
         """How long the whole lasts."""
         return self.motion.duration_s
@@ -62,11 +67,14 @@ class Altered(_Imperfect):
         How much faster it runs from its start on.
     late_s
         How much later it starts.
+    disturbed_late_share
+        1: X_p0 and X_w0 act as it starts; 0: as it was to start.
     """
 
     factor: float = 1.0
     pace: float = 1.0
     late_s: float = 0.0
+    disturbed_late_share: float = 1.0
 
     @property
     def start_s(self) -> float:
@@ -74,9 +82,15 @@ class Altered(_Imperfect):
         return self.motion.start_s + self.late_s
 
     @property
+    def disturbed_s(self) -> float:
+        """When X_p0 and X_w0 act."""
+        return self.motion.disturbed_s + self.disturbed_late_share * self.late_s
+
+    @property
     def breaks_s(self) -> tuple[float, ...]:
-        """Where it is not smooth."""
-        return tuple(self._when(time_s) for time_s in self.motion.breaks_s)
+        """Where it is not smooth, or disturbed."""
+        breaks = tuple(self._when(time_s) for time_s in self.motion.breaks_s)
+        return breaks if self.disturbed_s in breaks else (*breaks, self.disturbed_s)
 
     def at(self, time_s: Array, within_s: Array | None = None) -> Command:
         """X*, X*' and X*''; see `Motion.at`."""

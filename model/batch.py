@@ -95,7 +95,9 @@ def _groups(
     together: dict[object, list[int]] = {}
     for place, task in enumerate(tasks):
         motion = task.driven
-        times = (motion.start_s, motion.duration_s, motion.breaks_s, task.drive_kind)
+        times = (
+            motion.start_s, motion.disturbed_s, motion.duration_s, motion.breaks_s, task.drive_kind
+        )  # fmt: skip
         # A sharp switch must not slow those without it.
         longest_s = task.step_s(method) if step_s is None else step_s
         divided = steps_a_row(output_rate_hz, longest_s, join=method.inside)

@@ -24,7 +24,12 @@ class Motion(Protocol):
 
     @property
     def start_s(self) -> float:
-        """When the motion starts; X_p0 and X_w0 act then."""
+        """When the motion starts."""
+        ...
+
+    @property
+    def disturbed_s(self) -> float:
+        """When X_p0 and X_w0 act: as it starts, unless a drive is late."""
         ...
 
     @property
@@ -110,6 +115,11 @@ class RampedSine:
             ramp=excitation.ramp,
             ending=excitation.ending,
         )
+
+    @property
+    def disturbed_s(self) -> float:
+        """See `Motion`."""
+        return self.start_s
 
     @property
     def end_s(self) -> float:

@@ -1,6 +1,7 @@
 """The points the integrator steps on: the output grid, divided or joined, and the breaks."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,8 @@ class Steps:
     share
         How far into its step each row lies, 0 to 1, shape (rows,); exactly 0 at a point.
     jump_point
-        The point at which the motion starts and the initial disturbances act.
+        The point at which the state jumps: where the motion does as it starts, else where the
+        initial disturbances act.
     """
 
     point_s: Array
@@ -67,6 +69,16 @@ class Steps:
         inside[np.diff(self.first_row[: steps + 1]) == 0] = 0
         extra = method.nodes.size - method.step_weights.size
         return needed + extra * int(np.count_nonzero(inside))
+
+
+@lru_cache(maxsize=64)
+def jumps_at_s(motion: Motion) -> float:
+    """When the state jumps: X_p0 and X_w0 act with the jump of a motion that starts at once."""
+    start_s = np.array(motion.start_s)
+    before = motion.at(start_s, start_s - SAME_POINT_S)
+    after = motion.at(start_s, start_s + SAME_POINT_S)
+    at_once = any(np.any(one != other) for one, other in zip(before[:2], after[:2], strict=True))
+    return motion.start_s if at_once else motion.disturbed_s
 
 
 def steps_a_row(output_rate_hz: float, longest_step_s: float, *, join: bool) -> tuple[int, int]:
@@ -134,5 +146,5 @@ def divide(
         output_s=output_s,
         first_row=np.append(first_row, output_s.size).astype(np.int64),
         share=share,
-        jump_point=int(np.abs(point_s - motion.start_s).argmin()),
+        jump_point=int(np.abs(point_s - jumps_at_s(motion)).argmin()),
     )

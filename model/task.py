@@ -22,7 +22,7 @@ from model.machine import Machine
 from model.method import Method, find_method
 from model.motion import Motion, RampedSine
 from model.rest import rest_state
-from model.steps import Steps, divide, steps_a_row
+from model.steps import Steps, divide, jumps_at_s, steps_a_row
 from model.tabulated import drive_at_stages
 
 Array = NDArray[np.float64]
@@ -295,7 +295,7 @@ class Task:
     def jump(self, steps: Steps) -> Array:
         """What the state gains when the motion starts: any jump of X* and X*', X_p0 and X_w0."""
         at, middle_s = steps.jump_point, steps.middle_s[:, 0]
-        start_s = self.driven.start_s
+        start_s = jumps_at_s(self.driven)
         jump = self._state_at(start_s, middle_s[min(at, len(middle_s) - 1)])
         if at > 0:
             jump -= self._state_at(start_s, middle_s[at - 1])

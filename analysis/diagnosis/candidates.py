@@ -109,7 +109,8 @@ POLICIES: dict[str, Policy] = {
     ),
     "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
-    "drive_phase": Policy(steps={"late_s": 0.003}),
+    # What disturbs the platform as its motion begins need not wait for a drive that is late.
+    "drive_phase": Policy(steps={"late_s": 0.003}, shapes={"disturbed_late_share": (1.0, 0.0)}),
     "drive_backlash": Policy(shapes={"servo_s": (6e-3,)}, form_share=LAW),
     "clock_drift": Policy(steps={"drift_ppm": 200.0}),
     # Whether its ramps last as commanded is told at the end of the motion alone.
@@ -137,7 +138,7 @@ FAMILIES = (
     | dict.fromkeys(LENGTHS, LENGTH)
 )
 
-WHOLE = ("left_at_rest", "reads_up", "drive_pushes")
+WHOLE = ("left_at_rest", "reads_up", "drive_pushes", "disturbed_late_share")
 """Shapes that are one thing or another."""
 
 BETWEEN = (

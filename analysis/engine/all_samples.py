@@ -88,6 +88,37 @@ def through(system: System, one: Followed, *, anew: bool = False) -> Followed:
     return replace(led if cost_of(led) < cost_of(one) else one, borrowed=False)
 
 
+def shown_the_way(
+    system: System, led: Sequence[Followed], before: Sequence[Followed]
+) -> list[Followed]:
+    """Hypotheses, their rivals led again from the parameters of one that found a better valley.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    led
+        To all samples, and through.
+    before
+        The same as they were led at first: what contended then may only not have found the way.
+    """
+    best, least = min(led, key=cost_of), min(map(cost_of, before))
+    if cost_of(best) > least - WORTH_IT or len(records_of(system)) >= SEVERAL:
+        return list(led)
+    found, asked = list(led), {best.names}
+    for one in sorted(before, key=cost_of):
+        contends = cost_of(one) < least + CONTENDS and one.state is not None
+        if not contends or one.names in asked or any(_says_more(one, other) for other in before):
+            continue
+        asked.add(one.names)
+        again = follow_ring(
+            system, best.nuisance, one.state, everything=True, near=True, ahead=best.costs,
+            lent=best.columns,
+        )  # fmt: skip
+        found.append(again if cost_of(again) > cost_of(best) + CONTENDS else through(system, again))
+    return found
+
+
 def _kinds(one: Followed) -> list[str]:
     """Families of what is on."""
     if one.state is None:

@@ -51,6 +51,10 @@ NEAR = 10.0
 """What leaves less than this of the first stretch is another law of the same thing, if not its own.
 Where friction all but holds the platform, numbers that are right to a percent leave more."""
 
+UNTOLD = 3.0
+"""What is one thing or another, of which lines prefer neither by more than this, is begun as both:
+with which of them a motion begins is often in the ring alone."""
+
 SOME, CLEAR, STRETCHES = 0.2, (1.1, 1.2, 1.3), 200
 """Of the time: what explains as much, when lines were asked before, is looked at in that alone: up
 to where no more than so much is left of the squared misfit of a sample, the least of these with
@@ -264,12 +268,21 @@ class FollowedSearch(MoreLeader):
     def _starts(self, guesses: Sequence[Guess]) -> Iterator[Followed]:
         """Where what lines tell leads over the first stretch."""
         least = np.inf
-        for one in self._fresh(guesses):
+        for one in self._fresh([each for guess in guesses for each in self._either(guess)]):
             if not any(one.state.is_about(at) for at in self._begun):
                 self._begun.append(one.state)
                 start = graduated(self._samples, one, most=AS_GOOD * least)
                 least = min(least, start.left)
                 yield start
+
+    def _either(self, guess: Guess) -> Iterator[Guess]:
+        """A guess, and with what is one thing or another the other way, if lines do not tell."""
+        yield guess
+        refiner, lines = self._refiner, self._refiner.directions_of(guess.nuisance)
+        for state in guess.state.otherwise():
+            told = [refiner.score_at(one, lines) for one in (guess.state, state)]
+            if abs(told[0] - told[1]) < UNTOLD:
+                yield replace(guess, state=state)
 
     def _begin(self, starts: Iterable[Followed]) -> tuple[list[Followed], float]:
         """Lead on what leaves no more than noise of the first stretch, until that arrives.

@@ -10,6 +10,7 @@ from analysis.engine.all_samples import (
     misfit_at,
     noise_of,
     nothing_again,
+    shown_the_way,
 )
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import others_beside
@@ -101,7 +102,7 @@ class Leader:
     def fitted(self) -> list[Fitted] | None:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""
         count = len(self._samples.shares)
-        self._led = led_through(self._system, self._led)
+        self._led = shown_the_way(self._system, led_through(self._system, self._led), self._led)
         first = sorted(self._led, key=farthest_first)
         nothing = nothing_again(self._system, self._nothing, first[:RESTARTS])
         if min(one.misfit for one in (*self._led, nothing)) > ARRIVED * count:

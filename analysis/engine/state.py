@@ -1,6 +1,6 @@
 """The free numbers of a hypothesis: magnitudes and shapes, in one vector."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import exp, log
 
@@ -22,6 +22,10 @@ MAGNITUDE_STEP = 0.02
 
 ABOUT = 8.0
 """Numbers that differ by fewer of their steps than this begin in one place."""
+
+
+EITHER = 2
+"""A shape with so many values to try is one thing or another."""
 
 
 @dataclass(frozen=True)
@@ -156,6 +160,15 @@ class State:
         part = self.hypothesis.parts[name]
         changed = replace(part, shapes={**part.shapes, shape: value})
         return replace(self, hypothesis=self.hypothesis.plus(name, changed))
+
+    def otherwise(self) -> Iterator["State"]:
+        """With what is one thing or another the other way."""
+        for name, part in self.hypothesis.parts.items():
+            for shape in self.candidates[name].shapes:
+                if shape.whole and len(shape.grid) == EITHER:
+                    here = part.shapes.get(shape.name, shape.default)
+                    (other,) = (one for one in shape.grid if one != here)
+                    yield self.shaped(name, shape.name, other)
 
     def smaller(self, share: float, only: str = "") -> "State":
         """With magnitudes this much of themselves: of one cause only, or of every one."""

@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from model.motion import Motion
 
 
-def command(motion: "Motion", late_s: float) -> "Motion":
+def command(motion: "Motion", late_s: float, disturbed_late_share: float) -> "Motion":
     """X*(t - tau)."""
     from model.altered import Altered
 
-    return Altered(motion, late_s=late_s)
+    return Altered(motion, late_s=late_s, disturbed_late_share=disturbed_late_share)
 
 
 EFFECT = Effect(
@@ -22,6 +22,17 @@ EFFECT = Effect(
     equation="X*(t - tau)",
     source="design, section 4",
     signature="one lag in pose and tensions together",
-    parameters=(Parameter("late_s", "s", 0.01, -0.002, 0.2, "tau", False, True),),
+    parameters=(
+        Parameter("late_s", "s", 0.01, -0.002, 0.2, "tau", False, True),
+        Parameter(
+            "disturbed_late_share",
+            "1",
+            1.0,
+            0.0,
+            1.0,
+            "X_p0 and X_w0 act as the drive starts; 0: as it was to start",
+            False,
+        ),
+    ),
     command=command,
 )

@@ -39,6 +39,11 @@ class FreeDecay:
             )
 
     @property
+    def disturbed_s(self) -> float:
+        """See `Motion`."""
+        return self.start_s
+
+    @property
     def duration_s(self) -> float:
         """Held and free."""
         return self.hold_s + self.free_s

@@ -40,6 +40,11 @@ class Staircase:
             )
 
     @property
+    def disturbed_s(self) -> float:
+        """See `Motion`."""
+        return self.start_s
+
+    @property
     def moments_s(self) -> Array:
         """When each step starts, shape (poses + 1,), s."""
         steps = np.arange(len(self.poses) + 1)

@@ -58,6 +58,11 @@ class Windowed(ABC):
         """The shape s and its two derivatives, with the coordinates on a last axis."""
 
     @property
+    def disturbed_s(self) -> float:
+        """See `Motion`."""
+        return self.start_s
+
+    @property
     def start_s(self) -> float:
         """When the motion starts."""
         return self.times.start_s
