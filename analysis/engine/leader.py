@@ -87,6 +87,7 @@ class Leader:
         self._fewer: list[Followed] = []
         self._everywhere: set[tuple[str, tuple[str, ...]]] = set()
         self._anew: set[tuple[str, ...]] = set()
+        self._asked_more = False
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
     @property

@@ -55,10 +55,13 @@ class MoreLeader(RivalLeader):
     def _one_more(self) -> bool:
         """Try one cause more beside the best; whether that leads farther."""
         best, refiner = self._best, self._refiner
-        # However much was tried: beside what explains to the noise little is to be led.
-        spent = self._effort > self._most and not self._explains(best)
+        # However much was tried: beside what explains to the noise little is to be led, and beside
+        # what leads to the end one cause more is asked for once.
+        first = best.to_end and not self._asked_more
+        spent = self._effort > self._most and not (first or self._explains(best))
         if len(best.names) >= self._most_causes or spent:
             return False
+        self._asked_more = True
         found = self._faint(best)
         family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
