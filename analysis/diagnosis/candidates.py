@@ -89,7 +89,7 @@ POLICIES: dict[str, Policy] = {
         shapes={"loss_s": (5e-3,), "at_x_m": (0.0,), "at_y_m": (0.0,), "at_z_m": (0.0,)}
     ),
     "pulley_inertia": Policy(
-        shapes={"grip_s": (2e-3,), "bearing_per_s": (0.0, 50.0)},
+        shapes={"grip_s": (2e-3,), "front_share": (0.0, 0.2), "bearing_per_s": (0.0, 50.0)},
         form_share=LINEAR,
     ),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
@@ -148,6 +148,7 @@ BETWEEN = (
     "drive_stays_share",
     "reaction_share",
     "depth_share",
+    "front_share",
     "ramps_kept_share",
 )
 """Shapes that lead from one law to another."""

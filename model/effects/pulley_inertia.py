@@ -2,51 +2,79 @@
 
 from typing import Any
 
-from model.library.effect import Acts, Effect, Parameter, State, elongated
+import numpy as np
+
+from model.library.effect import Acts, Effect, Parameter, State
+
+
+def _tone(equivalent_kg: Any, grip_s: Any, front_share: Any, stiffness: Any) -> Any:
+    """Tone of the rim, 1/s: on the grip, and on the springs before and behind it."""
+    give = front_share * (1.0 - front_share) * equivalent_kg / stiffness
+    grip = grip_s * grip_s
+    return 1.0 / np.sqrt(np.sqrt(grip * grip + give * give))
 
 
 def _grip(
+    equivalent_kg: Any,
     grip_s: Any,
+    front_share: Any,
     turned: Any,
     rim: Any,
-    length: Any,
-    rest_length: Any,
-    axial_velocity: Any,
+    elongation: Any,
+    elongation_rate: Any,
+    stiffness: Any,
 ) -> Any:
-    """The pull of the cable on the rim over its mass, m/s2: a spring and a damper."""
-    ahead = length - rest_length - turned
-    return (ahead / grip_s + 2.0 * (axial_velocity - rim)) / grip_s
+    """The pull of the cable on the rim over its mass, m/s2: a spring, and the grip's damper."""
+    tone, goes = _tone(equivalent_kg, grip_s, front_share, stiffness), 1.0 - front_share
+    ahead = goes * elongation - turned
+    gripped = grip_s * grip_s * tone * tone
+    gripped = gripped * gripped
+    damper = 2.0 * tone * gripped * gripped
+    return tone * tone * ahead + damper * (goes * elongation_rate - rim)
 
 
 def pull(
     equivalent_kg: Any,
     grip_s: Any,
+    front_share: Any,
     turned: Any,
     rim: Any,
-    length: Any,
-    rest_length: Any,
-    axial_velocity: Any,
+    elongation: Any,
+    elongation_rate: Any,
+    stiffness: Any,
 ) -> Any:
-    """m_p g, the force that accelerates the rim and turns its bearing."""
-    return equivalent_kg * _grip(grip_s, turned, rim, length, rest_length, axial_velocity)
+    """(1 - f) m_p g, of the force that accelerates the rim and turns its bearing."""
+    grip = _grip(
+        equivalent_kg, grip_s, front_share, turned, rim, elongation, elongation_rate, stiffness,
+    )  # fmt: skip
+    return (1.0 - front_share) * equivalent_kg * grip
 
 
 def rates(
+    equivalent_kg: Any,
     grip_s: Any,
+    front_share: Any,
     bearing_per_s: Any,
     turned: Any,
     rim: Any,
-    length: Any,
-    rest_length: Any,
-    axial_velocity: Any,
+    elongation: Any,
+    elongation_rate: Any,
+    stiffness: Any,
 ) -> tuple[Any, Any]:
     """The cable gets ahead of the rim and drags it; its bearing holds it back."""
-    grip = _grip(grip_s, turned, rim, length, rest_length, axial_velocity)
+    grip = _grip(
+        equivalent_kg, grip_s, front_share, turned, rim, elongation, elongation_rate, stiffness,
+    )  # fmt: skip
     return rim, grip - bearing_per_s * rim
 
 
+def rests(elongation: Any, front_share: Any) -> Any:
+    """The rim has gone with its part of the elongation."""
+    return (1.0 - front_share) * elongation
+
+
 def steepest(equivalent_kg: Any, grip_s: Any) -> Any:
-    """2 m_p / tau, before the rim follows."""
+    """2 m_p / tau at most, before the rim follows."""
     return 2.0 * equivalent_kg / grip_s
 
 
@@ -54,18 +82,20 @@ EFFECT = Effect(
     name="pulley_inertia",
     title="inertia of the pulley",
     acts=Acts.PULLEY,
-    equation="T += m_p g, v_r' = g - b v_r, g = (e/tau + 2 (v - v_r))/tau, e = L - L_0 - x_r; "
-    "m_p = J/r^2",
-    source="Newton; a grip, critically damped, replaces the algebraic loop with the platform's "
+    equation="T += (1-f) m_p g, v_r' = g - b v_r, g = w^2 e + 2 w (w tau)^8 e', "
+    "e = (1-f)(L - L_0) - x_r, 1/w^4 = tau^4 + (f (1-f) m_p/k)^2; m_p = J/r^2",
+    source="Newton; a share f of the cable's give is before the pulley, the rest behind it. Where "
+    "none is, a grip, critically damped, replaces the algebraic loop with the platform's "
     "acceleration and lags by 2 (w tau)^3 only",
     signature="in phase with the acceleration, -w^2: like stiffness at one frequency",
     parameters=(
         Parameter("equivalent_kg", "kg", 0.05, 0.0, 1.0, "m_p", magnitude=True),
         Parameter("grip_s", "s", 2e-3, 1e-3, 1e-2, "tau"),
+        Parameter("front_share", "1", 0.0, 0.0, 0.6, "f, of the give, before the pulley"),
         Parameter("bearing_per_s", "1/s", 0.0, 0.0, 200.0, "b: drag of the bearing over m_p"),
     ),
     states=(
-        State("turned", "m", "x_r, way of the rim", rests=elongated),
+        State("turned", "m", "x_r, way of the rim", rests=rests),
         State("rim", "m/s", "v_r, its speed"),
     ),
     pull=pull,

@@ -1,0 +1,33 @@
+"""A pulley that has to be turned: at the end of the cable, or between two springs."""
+
+import numpy as np
+import pytest
+
+from model.effects import library
+from tests.model.harness import STIFFNESS, cable_response
+
+
+def test_pulley_inertia_goes_with_the_acceleration() -> None:
+    effect = library()["pulley_inertia"]
+    slow, fast = cable_response(effect), cable_response(effect, frequency_hz=4.0)
+    assert slow.in_phase[1] == pytest.approx(-0.05 * (4 * np.pi) ** 2 * 5e-3, rel=0.02)
+    assert fast.in_phase[1] == pytest.approx(4 * slow.in_phase[1], rel=0.02)
+    # A platform rings at some 10 Hz: what follows late there would damp it, or shake it.
+    rung = cable_response(effect, frequency_hz=10.0)
+    assert abs(rung.quadrature[1]) < 5e-3 * abs(rung.in_phase[1])
+
+
+def test_a_rim_between_two_springs_is_newton_s() -> None:
+    """T = k_f (x - s), m s'' = k_f (x - s) - k_b s - b m s', x as the cable is moved."""
+    share, mass, bearing = 0.2, 0.5, 20.0
+    values = {"equivalent_kg": mass, "front_share": share, "bearing_per_s": bearing, "grip_s": 1e-3}
+    front, back = STIFFNESS / share, STIFFNESS / (1.0 - share)
+    for hertz in (2.0, 8.0):
+        answer = cable_response(
+            library()["pulley_inertia"], values, frequency_hz=hertz, cycles=int(2.0 * hertz)
+        )
+        turn = 2.0j * np.pi * hertz
+        rim = front / (mass * turn**2 + bearing * mass * turn + front + back)
+        beyond = 5e-3 * (front * (1.0 - rim) - STIFFNESS)
+        assert answer.in_phase[1] == pytest.approx(beyond.real, rel=0.02)
+        assert answer.quadrature[1] == pytest.approx(beyond.imag, rel=0.05)
