@@ -53,7 +53,16 @@ def _friction(**shapes: tuple[float, ...]) -> Policy:
 
 POLICIES: dict[str, Policy] = {
     "air_drag": Policy(shapes={"arm_m": (0.15,)}),
-    "anchor_play": Policy(shapes={"hold_n": (0.25, 0.8), "slide_s": (1e-3,)}, form_share=0.3),
+    # Nothing may hold the hook in its gap: then it costs no energy.
+    "anchor_play": Policy(
+        shapes={
+            "hold_n": (0.25, 0.8),
+            "held_share": (1.0, 0.0),
+            "middle_share": (0.0,),
+            "slide_s": (1e-3,),
+        },
+        form_share=0.3,
+    ),
     "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
     # A rig's stiffness may have been measured before fibres slip, or after.
     "cable_hysteresis": Policy(
@@ -68,7 +77,7 @@ POLICIES: dict[str, Policy] = {
     # Whoever made its drive may have reckoned with cables that push, as Eq. 16 has them.
     "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),
-    "cable_stiffening": Policy(shapes={"asymmetry_m": (0.0, 0.02)}),
+    "cable_stiffening": Policy(shapes={"follows_share": (0.0, 1.0), "hardening": (0.3,)}),
     # A rig's stiffness may have been measured more slowly than the slowest branch relaxes.
     "cable_structural": Policy(form_share=LINEAR, shapes={"decades_below": (0.0,)}),
     "platform_damping": Policy(form_share=LINEAR),
@@ -138,7 +147,7 @@ FAMILIES = (
     | dict.fromkeys(LENGTHS, LENGTH)
 )
 
-WHOLE = ("left_at_rest", "reads_up", "drive_pushes", "disturbed_late_share")
+WHOLE = ("left_at_rest", "reads_up", "drive_pushes", "disturbed_late_share", "held_share")
 """Shapes that are one thing or another."""
 
 BETWEEN = (
@@ -146,6 +155,7 @@ BETWEEN = (
     "bend",
     "counted_share",
     "drive_stays_share",
+    "follows_share",
     "reaction_share",
     "depth_share",
     "front_share",

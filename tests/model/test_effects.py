@@ -278,17 +278,16 @@ def test_stiffening_is_a_third_harmonic_in_phase() -> None:
     assert answer.work == pytest.approx(0.0, abs=1e-12)
 
 
-def test_stiffening_that_follows_the_tension_is_so_to_third_order() -> None:
+def test_stiffening_may_follow_the_tension() -> None:
     pull = library()["cable_stiffening"].pull
     assert pull is not None
     stiffness, rest_n, share = 3000.0, 20.0, 0.5
     rise = share * stiffness / rest_n
-    cubic, asymmetry_m = stiffness * rise**2 / 6.0, 3.0 / rise
-    elongation_m = np.linspace(-1e-3, 1e-3, 21)
+    elongation_m = np.linspace(-0.02, 0.02, 21)
     # dT/dx = k (1 + b (T - T_0) / T_0), T(0) = T_0.
     exact_n = rest_n / share * np.expm1(rise * elongation_m) - stiffness * elongation_m
-    found_n = pull(cubic, asymmetry_m, elongation_m)
-    assert found_n == pytest.approx(exact_n, abs=1.1 * stiffness * rise**3 * 1e-12 / 24.0)
+    found_n = pull(stiffness * rise**2 / 6.0, 1.0, share, elongation_m, stiffness, rest_n)
+    assert found_n == pytest.approx(exact_n, rel=1e-4, abs=1e-9)
 
 
 def test_slack_and_sag_are_even_and_in_phase() -> None:
