@@ -88,7 +88,7 @@ POLICIES: dict[str, Policy] = {
     ),
     "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0), "frame_loss": (0.03,)}),
     "pulley_coulomb": _friction(presliding_m=(5e-5,)),
-    "pulley_capstan": _friction(presliding_m=(5e-5,)),
+    "pulley_capstan": _friction(presliding_m=(5e-5,), loaded_share=(0.5,)),
     "pulley_presliding": _friction(presliding_m=(6e-4, 2.4e-3)),
     "pulley_stribeck": _friction(
         static_ratio=(1.4,), stribeck_m_per_s=(0.008,), presliding_m=(5e-5,)
@@ -156,6 +156,7 @@ BETWEEN = (
     "counted_share",
     "drive_stays_share",
     "follows_share",
+    "loaded_share",
     "reaction_share",
     "depth_share",
     "front_share",

@@ -11,25 +11,36 @@ from model.library.bristle import (
     lost_over,
 )
 from model.library.effect import Acts, Effect, Parameter, State
+from model.library.smooth import smooth_positive
+
+TAUT = 0.01
+"""Over so much of the pretension it is rounded that a cable which hangs presses on nothing."""
+
+
+def _level(loaded_share: Any, before_pulley: Any, pretension: Any) -> Any:
+    """Where a bristle slips, over where it does at rest: one that no load makes stiffer, later."""
+    return 1.0 + (1.0 - loaded_share) * (smooth_positive(before_pulley / pretension, TAUT) - 1.0)
 
 
 def pull(
     friction: Any,
     wrap_rad: Any,
     presliding_m: Any,
+    loaded_share: Any,
     bristle_loss_s: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
-    elastic: Any,
+    before_pulley: Any,
     pretension: Any,
 ) -> Any:
-    """T (exp(mu theta (h(z) + t_b z')) - 1), less what it holds at rest."""
-    rate = rates(presliding_m, bent_at_rest, bristle, axial_velocity)
+    """T (exp(mu theta (h(z) + t_b z')/g) - 1), less what it holds at rest."""
+    level = _level(loaded_share, before_pulley, pretension)
+    turned = held(bristle + bent_at_rest, axial_velocity, presliding_m, level)
+    rate = bent(bristle + bent_at_rest, axial_velocity, presliding_m, level)
     grip = friction * wrap_rad
-    turned = held(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
-    now = _more(grip * (turned + bristle_loss_s * rate))
-    return elastic * now - pretension * _more(grip * bent_at_rest)
+    now = _more(grip * (turned + bristle_loss_s * rate) / level)
+    return before_pulley * now - pretension * _more(grip * bent_at_rest)
 
 
 def _more(a: Any) -> Any:
@@ -37,9 +48,18 @@ def _more(a: Any) -> Any:
     return a * (1.0 + a / 2.0 * (1.0 + a / 3.0 * (1.0 + a / 4.0 * (1.0 + a / 5.0))))
 
 
-def rates(presliding_m: Any, bent_at_rest: Any, bristle: Any, axial_velocity: Any) -> Any:
-    """Z follows sgn v within x_s."""
-    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, 1.0)
+def rates(
+    presliding_m: Any,
+    loaded_share: Any,
+    bent_at_rest: Any,
+    bristle: Any,
+    axial_velocity: Any,
+    before_pulley: Any,
+    pretension: Any,
+) -> Any:
+    """Z follows g sgn v within x_s."""
+    level = _level(loaded_share, before_pulley, pretension)
+    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level)
 
 
 def steepest(
@@ -58,9 +78,9 @@ EFFECT = Effect(
     name="pulley_capstan",
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += T (exp(mu theta (h + t_b z')) - 1) - T_0 (exp(mu theta z_0) - 1), "
-    "z' = (v - |v| z)/y, t = 0.5 ms, "
-    "h = w z + (1 - w) sgn v, w = x_s/y, y = (x_s^4 + (v t)^4)^(1/4)",
+    equation="T += T (exp(mu theta (h + t_b z')/g) - 1) - T_0 (exp(mu theta z_0) - 1), "
+    "z' = (v - |v| z/g)/y, g = l + (1 - l) T/T_0, t = 0.5 ms, "
+    "h = w z + (1 - w) g sgn v, w = x_s/y, y = (x_s^4 + (v t)^4)^(1/4)",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",
@@ -68,6 +88,7 @@ EFFECT = Effect(
         Parameter("friction", "1", 0.03, 0.0, 0.5, "mu", magnitude=True),
         Parameter("wrap_rad", "rad", 1.5708, 0.1, 6.2832, "theta, angle of contact"),
         Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
+        Parameter("loaded_share", "1", 1.0, 0.0, 1.0, "l: 1, load makes a bristle stiffer; 0: not"),
         BRISTLE_LOSS,
         BENT_AT_REST,
     ),

@@ -53,11 +53,10 @@ def _call(effect: Effect, hook: str, find: Find) -> str:
 
 
 def _cable_effects() -> Iterable[tuple[int, Effect]]:
-    return (
-        (number, effect)
-        for number, effect in enumerate(kernel_effects())
-        if effect.acts is not Acts.PLATFORM
-    )
+    """Those of the cable before those at the pulley, which is pulled by both."""
+    numbered = enumerate(kernel_effects())
+    found = ((number, effect) for number, effect in numbered if effect.acts is not Acts.PLATFORM)
+    return sorted(found, key=lambda one: one[1].acts is Acts.PULLEY)
 
 
 def _platform_effects() -> Iterable[tuple[int, Effect]]:
@@ -96,11 +95,13 @@ def _has_rates(effect: Effect) -> bool:
     return any(law is not None for law in (effect.rates, effect.transverse, effect.across))
 
 
-def _scalar_find(effect: Effect, number: int) -> Find:
+def _scalar_find(effect: Effect, number: int, *, pulling: bool = False) -> Find:
     column = "0" if effect.acts is Acts.PLATFORM else "i"
 
     def find(name: str) -> str:
         own = _own(effect, name)
+        if name == "before_pulley" and pulling:
+            return "(line.elastic + pull)"
         if own is None:
             known = context.PLATFORM if effect.acts is Acts.PLATFORM else context.CABLE
             return known[name][1] if name in known else f"numbers[{column}, {number_of(name)}]"
@@ -123,7 +124,7 @@ def _scalar_pull() -> list[str]:
         "    pull, behind = 0.0, 0.0",
     ]
     for number, effect in _cable_effects():
-        find = _scalar_find(effect, number)
+        find = _scalar_find(effect, number, pulling=True)
         if effect.pull is None:
             continue
         lines.append(_switch(number))
@@ -181,7 +182,7 @@ def _scalar_wrench() -> list[str]:
 # of `y` that starts at 0 spares the vector loops a gather.
 
 
-def _lane_find(effect: Effect) -> Find:
+def _lane_find(effect: Effect, *, pulling: bool = False) -> Find:
     of_platform = effect.acts is Acts.PLATFORM
     numbers = "q" if of_platform else "own"
     coordinates = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -196,6 +197,10 @@ def _lane_find(effect: Effect) -> Find:
             return f"y[{coordinates.index(name) * LANES} + w]"
         if name in context.NUMBERS:
             return f"own[{number_of(name) * LANES} + w]"
+        if name == "before_pulley":
+            pull = f"work[{WORK['pull'] * LANES} + w]"
+            rest = "+ work[{}" if pulling else "- work[{}"
+            return f"({pull} {rest.format(WORK['elastic' if pulling else 'behind'] * LANES)} + w])"
         return f"work[{_work_slot('pull' if name == 'tension' else name) * LANES} + w]"
 
     return find
@@ -226,7 +231,7 @@ def _lane_pull() -> list[str]:
     for number, effect in _cable_effects():
         if effect.pull is None:
             continue
-        find = _lane_find(effect)
+        find = _lane_find(effect, pulling=True)
         lines += [_switch(number), *_lane_states(effect, number, False)]
         lines.append(f"        for w in range({LANES}):")
         lines.append(f"            added = {_call(effect, 'pull', find)}")

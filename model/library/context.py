@@ -17,6 +17,10 @@ CABLE: Mapping[str, tuple[str, str]] = {
     "anchor_velocity_y": ("of the anchor in O-XYZ, m/s", "line.anchor_velocity[1]"),
     "anchor_velocity_z": ("of the anchor in O-XYZ, m/s", "line.anchor_velocity[2]"),
     "elastic": ("T_i of Eq. 16, N", "line.elastic"),
+    "before_pulley": (
+        "the same with what acts in the cable, N; for what acts at the pulley",
+        "(line.pull - line.behind)",
+    ),
     "mid_span": ("X_w of Eq. 15, m", "state[12 + i]"),
     "tension": ("the tension at the anchor with all effects, N; not in `pull`", "line.pull"),
 }

@@ -79,6 +79,7 @@ def cable_response(
             "anchor_velocity_y": anchor[1],
             "anchor_velocity_z": anchor[2],
             "elastic": elastic,
+            "before_pulley": elastic,
             "stiffness": STIFFNESS,
             "pretension": pretension,
             "line_density": 9e-3,
