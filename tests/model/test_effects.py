@@ -15,7 +15,7 @@ from model.library.discovery import kernel_effects
 from model.library.effect import Acts
 from model.motion import RampedSine
 from model.simulator import run
-from tests.model.harness import cable_response, platform_response
+from tests.model.harness import STEPS, STIFFNESS, cable_response, platform_response
 
 ALL = list(library().values())
 KERNEL = list(kernel_effects())
@@ -288,6 +288,15 @@ def test_stiffening_may_follow_the_tension() -> None:
     exact_n = rest_n / share * np.expm1(rise * elongation_m) - stiffness * elongation_m
     found_n = pull(stiffness * rise**2 / 6.0, 1.0, share, elongation_m, stiffness, rest_n)
     assert found_n == pytest.approx(exact_n, rel=1e-4, abs=1e-9)
+
+
+def test_a_hook_that_nothing_holds_goes_through_its_gap_at_no_cost() -> None:
+    gap = {"play_m": 1e-3, "held_share": 0.0, "middle_share": -0.3}
+    answer = cable_response(library()["anchor_play"], gap)
+    phase = 2.0 * np.pi * np.arange(STEPS) / STEPS
+    slid_m = np.clip(5e-3 * np.sin(phase), -1.3e-3, 0.7e-3)
+    assert answer.force == pytest.approx(-STIFFNESS * slid_m, abs=1e-6)
+    assert answer.work == pytest.approx(0.0, abs=1e-9)
 
 
 def test_slack_and_sag_are_even_and_in_phase() -> None:

@@ -138,3 +138,28 @@ def test_lanes_with_two_drives_among_them_each_follow_their_own(rig: Rig) -> Non
     tasks += [Task(rig, SHORT, effects=[late])]
     for task, lane in zip(tasks, simulate_many(tasks), strict=True):
         assert lane.pose == pytest.approx(run(task).pose, abs=1e-10)
+
+
+def test_a_pulley_is_pressed_by_what_acts_in_the_cable_in_both_kernels(rig: Rig) -> None:
+    pressed = ActiveEffect("pulley_capstan", {"friction": 0.1, "loaded_share": 0.5})
+    stiffer = ActiveEffect("cable_stiffening", {"cubic_n_per_m3": 5e8})
+    tasks = [Task(rig, SHORT, effects=one) for one in ([pressed], [pressed, stiffer], [stiffer])]
+    alone, both, without = simulate_many(tasks)
+    for task, lane in zip(tasks, (alone, both, without), strict=True):
+        assert lane.tension_n == pytest.approx(run(task).tension_n, abs=1e-7)
+    apart = alone.tension_n - run(Task(rig, SHORT)).tension_n
+    assert np.abs(both.tension_n - without.tension_n - apart).max() > 0.05
+
+
+def test_lanes_are_disturbed_each_when_its_drive_is(rig: Rig) -> None:
+    moved = SHORT.model_copy(update={"platform_offset_m": (1e-3, 0.0, 0.0), "rest_s": 0.2})
+    late = [
+        ActiveEffect("drive_phase", {"late_s": 0.05, "disturbed_late_share": share})
+        for share in (0.0, 1.0)
+    ]
+    tasks = [Task(rig, moved, effects=[one]) for one in late]
+    for task, lane, disturbed_s in zip(tasks, simulate_many(tasks), (0.2, 0.25), strict=True):
+        offset_m = lane.pose[:, 0]
+        assert np.abs(offset_m[lane.t_s < disturbed_s - 1e-6]).max() < 1e-12
+        assert offset_m[lane.t_s > disturbed_s - 1e-6][0] == pytest.approx(1e-3, abs=1e-6)
+        assert lane.pose == pytest.approx(run(task).pose, abs=1e-10)

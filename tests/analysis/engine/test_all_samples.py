@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from analysis.engine import all_samples
-from analysis.engine.all_samples import all_samples_say, rise_beside_form, tells_more
+from analysis.engine.all_samples import (
+    WORTH_IT,
+    all_samples_say,
+    cost_of,
+    rise_beside_form,
+    shown_the_way,
+    tells_more,
+)
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
@@ -17,7 +24,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
-from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
+from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring, state_of
 
 DAMPED = LetGo(ring(0.0, 0.2, 0.0, 0.0))
 COUNT = 1000
@@ -161,3 +168,15 @@ def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refin
     found = search.fitted()
     assert found is not None
     assert found[0].hypothesis.names == ("damping",)
+
+
+def test_a_rival_is_led_again_from_what_found_a_better_valley() -> None:
+    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0))
+    hollow = follow_ring(system, np.zeros(1), state_of(DAMPING, 0.1), near=True, most=0.0)
+    found = follow_ring(system, np.zeros(1), everything=True)
+    assert cost_of(found) < cost_of(hollow) - WORTH_IT
+    led = shown_the_way(system, [hollow, found], [hollow, replace(found, misfit=hollow.misfit)])
+    again = min((one for one in led if one.names == ("damping",)), key=cost_of)
+    assert again.left == pytest.approx(1.0, abs=0.1)
+    assert again.nuisance[0] == pytest.approx(2.0, abs=0.01)
+    assert shown_the_way(system, [hollow], [hollow]) == [hollow]

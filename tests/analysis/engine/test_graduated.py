@@ -137,3 +137,15 @@ def test_what_lines_tell_is_known_to_a_share_and_nuisances_as_before() -> None:
     known = as_told(Guess(state_of(0.8, 0.4), np.ones(1)))
     assert known.at == pytest.approx([0.0, 0.8, 0.4])
     assert np.sqrt(1.0 / np.diag(known.information)) == pytest.approx([1.0, 0.04, 0.06])
+
+
+def test_what_is_one_thing_or_another_is_asked_the_other_way() -> None:
+    either = Shape("early", "1", 1.0, 0.0, 1.0, (1.0, 0.0), logarithmic=False, whole=True)
+    known = {"stuck": replace(STUCK, shapes=(*STUCK.shapes, either))}
+    part = Part(("force@1",), shapes={"bent@1": 0.2, "early": 1.0})
+    state = State.at(Hypothesis({"stuck": part}), {("stuck", "force@1"): 0.5}, known)
+    (other,) = state.otherwise()
+    assert other.hypothesis.parts["stuck"].shapes["early"] == 0.0
+    assert other.values == pytest.approx(state.values)
+    assert not other.is_about(state)
+    assert not list(state_of(0.5, 0.2).otherwise())
