@@ -172,7 +172,7 @@ def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refin
 
 def test_a_rival_is_led_again_from_what_found_a_better_valley() -> None:
     system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0))
-    hollow = follow_ring(system, np.zeros(1), state_of(DAMPING, 0.1), near=True, most=0.0)
+    hollow = follow_ring(system, np.zeros(1), state_of(DAMPING, 0.01), near=True, most=0.0)
     found = follow_ring(system, np.zeros(1), everything=True)
     assert cost_of(found) < cost_of(hollow) - WORTH_IT
     led = shown_the_way(system, [hollow, found], [hollow, replace(found, misfit=hollow.misfit)])
