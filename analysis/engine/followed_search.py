@@ -120,6 +120,7 @@ class FollowedSearch(MoreLeader):
             return
         if not self._near:
             tells = seen and tells_more(self._best, self._nothing, self._samples.shares)
+            tells = tells or (seen and self._leads_bent() and self._one_more())
             # Of a single recording lines are asked before the ring is asked for more.
             if not tells and (seen or self._enough is not None):
                 self._lead_next(others, self._is_farther)
@@ -156,6 +157,16 @@ class FollowedSearch(MoreLeader):
                 kinds |= kind
                 left -= 1
                 self._lead(one.nuisance, one.state, near=False)
+
+    def _leads_bent(self) -> bool:
+        """Whether the best leads over more than parameters alone, but bends them, and loses it.
+
+        What it bends them for is told best by that stretch: lines guess worse at a second cause.
+        """
+        best, (share, _) = self._best, self._nothing.reached
+        return (
+            best.state is not None and not best.to_end and best.is_bent and best.reached[0] > share
+        )
 
     def _is_farther(self, led: Followed) -> bool:
         return led.to_end or led.share >= self._nothing.share + EARLY
