@@ -63,7 +63,7 @@ POLICIES: dict[str, Policy] = {
         },
         form_share=0.3,
     ),
-    "cable_creep": Policy(shapes={"creep_s": (10.0,)}),
+    "cable_creep": Policy(shapes={"creep_s": (2.0, 20.0), "log_share": (1.0,)}),
     # A rig's stiffness may have been measured before fibres slip, or after.
     "cable_hysteresis": Policy(
         shapes={
@@ -156,6 +156,7 @@ BETWEEN = (
     "counted_share",
     "drive_stays_share",
     "follows_share",
+    "log_share",
     "loaded_share",
     "reaction_share",
     "depth_share",
