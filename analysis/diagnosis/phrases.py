@@ -29,8 +29,8 @@ PHRASES: Mapping[str, Callable[[Told], str]] = {
     ),
     "cable_creep": lambda c: (
         f"{c.who} {c.does('creeps', 'creep')} under load by {c.of('creep_share')} of "
-        f"{c.does('its', 'their')} elastic elongation, over {c.of('creep_s')} and ten times that, "
-        "so the mean tension falls slowly"
+        f"{c.does('its', 'their')} elastic elongation each time that passes e-fold, from "
+        f"{c.of('creep_s')} on, so the mean tension falls ever more slowly"
     ),
     "cable_end_forcing": lambda c: (
         f"the moving anchor shakes {c.who} sideways, {c.of('forcing_share')} times as much as a "
