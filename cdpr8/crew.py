@@ -28,6 +28,9 @@ USUAL = 2
 IDLE_S = 60.0
 """A process that had nothing to do for so long ends."""
 
+GROWS_BYTES = 2_000_000_000
+"""One that has grown by more than this since it started is replaced (loky's own limit: 300 MB)."""
+
 LOOK_S = 2.0
 """So often a copy looks whether the process that asked is still there."""
 
@@ -121,14 +124,16 @@ class Crew(Generic[Work, Done]):
 
     def _start(self, work: Work) -> None:
         """Start the others, each with a piece of work that is only to make it ready."""
-        # One that has grown is replaced, which nobody has to know.
-        warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
         executor = self._executor()
         self._ready = [executor.submit(_do, str(self._path), [work]) for _ in range(self._others)]
 
     def _executor(self) -> Any:
+        # What others load is no leak: to replace them for that costs the seconds they are to save.
+        os.environ.setdefault("LOKY_MAX_MEMORY_LEAK_SIZE", str(GROWS_BYTES))
         from loky import get_reusable_executor
 
+        # One that has grown too much is replaced, which nobody has to know.
+        warnings.filterwarnings("ignore", message="A worker was restarted", category=UserWarning)
         return get_reusable_executor(max_workers=self._others, timeout=IDLE_S, initializer=_serve)
 
 
