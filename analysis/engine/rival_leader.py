@@ -136,7 +136,11 @@ class RivalLeader(Leader):
             asked = self._faint(replace(best, about=None))
             forms = forms_of(self._refiner, best, self._nothing, len(self._samples.shares))
             _, noise = max(forms)
-            for _, one in placed_again(asked, candidates, noise)[:1]:
+            told = placed_again(asked, candidates, noise)
+            if not told and self.is_poor:
+                # What is left may come of the places, not of the form.
+                told = placed_again(asked, candidates)
+            for _, one in told[:1]:
                 state = State.of(one, candidates)
                 self._keep(lead_from(self._system, best, state, nuisances_of(asked, one)))
             if cost_of(self._best) < cost_of(best) - WORTH_IT:
