@@ -72,6 +72,7 @@ class FollowedSearch(ToldLeader):
         self._enough = enough
         self._asked_of: set[tuple[str, ...]] = set()
         self._foretold: tuple[Followed, Followed | None] | None = None
+        self._spared = False
         self.ended = False
         """Whether something was enough."""
 
@@ -187,10 +188,22 @@ class FollowedSearch(ToldLeader):
                 continue
             if waiting:
                 self._lead_rivals(last=True)
-            if self._best is best and not self._lead_elsewhere():
+            if self._best is best and not (self._lead_elsewhere() or self._spares()):
                 break
         for one in self._as_close():
             self._one_less(one)
+
+    def _spares(self) -> bool:
+        """Whether more is tried, however much it took to come close to the noise: once.
+
+        What leaves more than that may be another law, or another cause, of what leads there.
+        """
+        spent = self._effort > self._most and not self._spared
+        if not (spent and self.arrived) or self._explains(self._best):
+            return False
+        self._spared = True
+        self._most = self._effort + EFFORT
+        return True
 
     def lead_released(self) -> None:
         """Parameters that are off, of all kinds together, where all of them were bent far.
