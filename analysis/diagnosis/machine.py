@@ -178,6 +178,8 @@ class RecordedMachine:
         for place, point in enumerate(points):
             if not point.records or name in point.records:
                 together.setdefault(self._key(point, record), {})[place] = point
+        if not together:
+            return []
         # Like simulations beside each other.
         alike = [together[key] for key in sorted(together, key=str)]
         count = sum(len(GUARDS[next(iter(places.values())).ring]) for places in alike)

@@ -77,6 +77,21 @@ def test_where_less_counts_a_machine_is_looked_at_in_less_and_simulated_as_befor
     assert all(np.array_equal(a, b) for a, b in zip(left, all_, strict=True))
 
 
+def test_a_run_that_is_not_asked_for_is_not_simulated(recorded: Recording, tmp_path: Path) -> None:
+    other = by_model(tmp_path / "other", [], Excitation(amplitude_deg=1.0, motion_s=2.0, **STILL))
+    machine = RecordedMachine([recorded, other], NAMES, workers=1)
+    nominal = Point(np.zeros(len(machine.nuisances)))
+    (whole,) = machine.simulate([nominal], lambda found: found)
+    both = machine.simulated
+    for one, there in ((recorded, slice(0, 9)), (other, slice(9, 18))):
+        machine.simulated = 0
+        alone = replace(nominal, records=(one.run.name,))
+        (seen,) = machine.simulate([alone], lambda found: found)
+        assert 2 * machine.simulated == both
+        for found, wanted in zip(seen[there], whole[there], strict=True):
+            assert found == pytest.approx(wanted, abs=1e-12)
+
+
 def test_the_machine_says_how_stiffness_moves_its_tones(recorded: Recording) -> None:
     machine = RecordedMachine([recorded], NAMES, workers=1)
     assert isinstance(machine, Ringing)
