@@ -11,7 +11,7 @@ from analysis.engine.evidence import Frame, Problem, weigh
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
-from analysis.engine.screen import Scored
+from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import nuisance_columns, simulate_features, sound
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
@@ -81,6 +81,10 @@ class Refiner:
             self._problem = replace(
                 calibrated.problem, nuisance=calibrated.columns, at=calibrated.at
             )
+
+    def nothing(self) -> Fitted:
+        """Nothing left out, parameters fitted."""
+        return self.fit(Screen(self.calibrated.problem, self.candidates, {}).null())
 
     def fit(self, start: Scored, rounds: int = ROUNDS, at_least: float = -np.inf) -> Fitted:
         """From a screened hypothesis to a fitted one.
