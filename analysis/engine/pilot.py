@@ -8,6 +8,7 @@ handed on to the next, and at the end all are led at once, over the little way t
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from analysis.engine.by_lines import by_lines
 from analysis.engine.by_ring import Found, Start, by_ring
 from analysis.engine.chain import Chained, chained, left_in
 from analysis.engine.cycles import valley
@@ -22,6 +23,9 @@ from analysis.engine.system import Array, System
 
 CHAINS, PILOTS = 2, 3
 """So many are tried to begin with where nothing is left out, and where something is."""
+
+BY_LINES = 1
+"""So many pilots, that do not lead by what their ring promises, are asked for what lines tell."""
 
 BESIDE = 2
 """A recording that parameters could not be led on to leads with so many of those before it."""
@@ -52,7 +56,8 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         if pilot is None:
             break
         tried.append(pilot.records[0])
-        whole = _led_by(refiner, pilot, most_causes, tell, wanted)
+        by_lines_too = len(tried) <= BY_LINES
+        whole = _led_by(refiner, pilot, most_causes, tell, wanted, by_lines_too)
         if whole.fitted:
             return whole
     return Found((), (), faint=False)
@@ -71,22 +76,29 @@ def _led_by(
     most_causes: int,
     tell: Tell | None,
     wanted: set[tuple[str, ...]],
+    by_lines_too: bool,
 ) -> Found:
     """What all recordings say, from where a pilot leads; no hypotheses, where that is nowhere.
 
     What leads an earlier pilot farthest, though not through it, is `wanted`: it is led in all
     recordings from where the next comes to, however little that says of it. Gains what leads here.
+    Where the ring leads nowhere, lines may be asked too.
     """
     at = refiner.calibrated.at
     part = Part(refiner.system, pilot.records)
     beside = at if pilot.nuisance is None else pilot.nuisance
     start = None if pilot.nuisance is None else Start(part.own(pilot.nuisance))
     lifting = Lifting(refiner, part, beside, most_causes, tell)
-    found = by_ring(Refiner(part, *look(part, tell)), most_causes, tell, start, lifting.enough)
+    own = Refiner(part, *look(part, tell))
+    found = by_ring(own, most_causes, tell, start, lifting.enough)
     if not lifting.leads:
         lifting.lift(found.fitted, wanted)
     if found.led is not None:
         wanted |= found.led.search.farther
+        if by_lines_too and not lifting.leads:
+            told = by_lines(own, own.nothing(), most_causes, tell, found.led)
+            if told.faint and not lifting.leads:
+                lifting.lift(told.fitted, wanted)
     if not lifting.leads:
         return Found((), (), faint=False)
     # What the pilot screened stays told, where all were led from what it found.

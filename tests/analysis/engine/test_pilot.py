@@ -6,12 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine import lifting
-from analysis.engine.by_ring import by_ring
+from analysis.engine import lifting, pilot
+from analysis.engine.by_ring import Found, Led, Start, by_ring
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
 from analysis.engine.diagnosis import diagnose
+from analysis.engine.finder import Tell
 from analysis.engine.followed import Followed
+from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.hypothesis import Part as OfHypothesis
 from analysis.engine.lifting import lifted
@@ -128,6 +130,31 @@ def test_the_pilot_is_the_recording_that_is_least_off_and_was_not_tried() -> Non
     assert _next(system, np.zeros(5), []) == "low"
     assert _next(system, np.zeros(5), ["low"]) == "middle"
     assert _next(system, np.zeros(5), records_of(system)) is None
+
+
+def test_where_no_ring_leads_what_a_pilots_lines_tell_is_led_through_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Sequence[str]] = []
+
+    def lost(
+        refiner: Refiner,
+        most_causes: int,
+        tell: Tell | None,
+        start: Start | None = None,
+        enough: Callable[[Followed], bool] | None = None,
+    ) -> Found:
+        asked.append(records_of(refiner.system))
+        nothing = follow_ring(refiner.system, refiner.calibrated.at, everything=True)
+        search = FollowedSearch(refiner, nothing, most_causes, enough=enough)
+        return Found((), (), faint=False, led=Led(search, []))
+
+    monkeypatch.setattr(pilot, "by_ring", lost)
+    found = by_pilot(refiner(LetGoOften()), 2, None)
+    assert len(asked) == 1
+    assert found.fitted[0].hypothesis.names == ("damping",)
+    damping = found.fitted[0].values["damping", "damping"]
+    assert damping == pytest.approx(DAMPING_1_PER_S, abs=2e-3)
 
 
 def test_what_is_left_out_is_found_in_all_with_fewer_simulations_of_all() -> None:
