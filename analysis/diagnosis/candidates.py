@@ -77,7 +77,7 @@ POLICIES: dict[str, Policy] = {
     # Whoever made its drive may have reckoned with cables that push, as Eq. 16 has them.
     "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),
-    "cable_stiffening": Policy(shapes={"follows_share": (0.0, 1.0), "hardening": (0.3,)}),
+    "cable_stiffening": Policy(shapes={"quadratic_share": (0.0, 3.0), "hardening": (0.3,)}),
     # A rig's stiffness may have been measured more slowly than the slowest branch relaxes.
     "cable_structural": Policy(form_share=LINEAR, shapes={"decades_below": (0.0,)}),
     "platform_damping": Policy(form_share=LINEAR),
@@ -155,7 +155,7 @@ BETWEEN = (
     "bend",
     "counted_share",
     "drive_stays_share",
-    "follows_share",
+    "quadratic_share",
     "log_share",
     "loaded_share",
     "reaction_share",

@@ -272,7 +272,8 @@ def test_what_the_stiffness_counts_of_a_loop_already_is_taken_off() -> None:
 
 
 def test_stiffening_is_a_third_harmonic_in_phase() -> None:
-    answer = cable_response(library()["cable_stiffening"])
+    # The limit, a cube alone.
+    answer = cable_response(library()["cable_stiffening"], {"hardening": 0.0})
     assert answer.share(3) == pytest.approx(1 / 3)
     assert abs(answer.quadrature[1]) < 1e-9
     assert answer.work == pytest.approx(0.0, abs=1e-12)
@@ -286,8 +287,19 @@ def test_stiffening_may_follow_the_tension() -> None:
     elongation_m = np.linspace(-0.02, 0.02, 21)
     # dT/dx = k (1 + b (T - T_0) / T_0), T(0) = T_0.
     exact_n = rest_n / share * np.expm1(rise * elongation_m) - stiffness * elongation_m
-    found_n = pull(stiffness * rise**2 / 6.0, 1.0, share, elongation_m, stiffness, rest_n)
+    found_n = pull(stiffness * rise**2 / 6.0, 1.0 / share, share, elongation_m, stiffness, rest_n)
     assert found_n == pytest.approx(exact_n, rel=1e-4, abs=1e-9)
+
+
+def test_stiffening_that_hardly_hardens_is_a_square_beside_a_cube() -> None:
+    pull = library()["cable_stiffening"].pull
+    assert pull is not None
+    stiffness, rest_n, cubic = 3000.0, 20.0, 2e5
+    elongation_m = np.linspace(-0.02, 0.02, 21)
+    cube_n = cubic * elongation_m**3
+    square_n = cubic * 3.0 * 1.5 * rest_n / stiffness * elongation_m**2
+    found_n = pull(cubic, 1.5, 0.03, elongation_m, stiffness, rest_n)
+    assert np.abs(found_n - cube_n - square_n).max() < 1e-3 * np.abs(square_n).max()
 
 
 def test_a_hook_that_nothing_holds_goes_through_its_gap_at_no_cost() -> None:
