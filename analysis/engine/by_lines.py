@@ -45,7 +45,8 @@ def by_lines(
     tell
         Told of progress.
     led
-        What was led to the ring's phase before; None: the ring is not asked.
+        What was led to the ring's phase before; None: the ring is not asked. Where something is
+        enough, there are no hypotheses.
     """
     finder = Finder(refiner, _terms(refiner, tell), tell)
     singles = finder.singles(null)
@@ -58,6 +59,8 @@ def by_lines(
     if led is not None:
         told = [*_to_follow(refiner, null, led.single, alone), *_as_likely(refiner, null, alone)]
         led.search.follow(told, [*alone, *led.single], seen=True)
+        if led.search.ended:
+            return Found(singles, (), faint=True)
         poor = not led.search.arrived or led.search.is_poor
         if poor and led.search.foretells is None:
             led.search.follow(_both(refiner, null, led.single, alone), [], seen=True)

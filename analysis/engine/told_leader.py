@@ -11,8 +11,6 @@ from analysis.engine.graduated import alike, graduated
 from analysis.engine.guess import Guess
 from analysis.engine.leader import EFFORT, POOR
 from analysis.engine.more_leader import MoreLeader
-from analysis.engine.refine import Refiner
-from analysis.engine.sensitivity import Progress
 from analysis.engine.survey import sticks, surveyed
 from analysis.engine.way import AT_ONCE
 
@@ -35,17 +33,8 @@ class ToldLeader(MoreLeader):
     Parameters are those of `Leader`.
     """
 
-    def __init__(
-        self,
-        refiner: Refiner,
-        nothing: Followed,
-        most_causes: int,
-        progress: Progress | None = None,
-        *,
-        near: bool = False,
-    ) -> None:
-        super().__init__(refiner, nothing, most_causes, progress, near=near)
-        self._slips = False
+    _slips = False
+    """Whether only a survey leads over the first stretch: what holds there slips."""
 
     def _lead_told(self, guesses: Sequence[Guess]) -> None:
         """Lead what lines tell: what leaves least of the first stretch, as long as none arrives.
