@@ -5,6 +5,7 @@ See `cdpr8.machine_code` for why.
 
 from collections.abc import Callable
 from functools import cache
+from importlib import import_module
 from inspect import isfunction
 from pathlib import Path
 from types import ModuleType
@@ -27,14 +28,21 @@ functions allocate nothing, and return no part of an array: Python gives them th
 INLINE = ("cable", "derivative", "acceleration", "sine_cosine")
 """Small next to their many arguments: a call would cost more than the work."""
 
-SCALAR = ("integrate", "observe", "derivatives", "drive_wrench")
-"""Functions of `model.kernel` that Python calls; all others are compiled into them."""
+CALLED = {
+    "integrate": "runge_kutta",
+    "derivatives": "kernel",
+    "observe": "kernel",
+    "drive_wrench": "kernel",
+    "integrate_lanes": "lane_steps",
+    "observe_lanes": "lanes",
+    "between_rows": "loops",
+    "follow_play": "loops",
+}
+"""Functions that Python calls, and the module of `model` each is in; all others of these modules
+are compiled into them."""
 
-LOOPS = ("between_rows", "follow_play")
-"""Functions of `model.loops` that Python calls."""
-
-LANE = ("integrate_lanes", "observe_lanes")
-"""Functions of `model.lanes` that Python calls."""
+LANES = ("lanes", "lane_steps")
+"""Modules of the lane kernel."""
 
 
 def compile_solver(announce: Announce | None = None) -> None:
@@ -49,34 +57,34 @@ def compile_solver(announce: Announce | None = None) -> None:
 
 
 def integrator(announce: Announce | None = None) -> Any:
-    """`model.kernel.integrate`, compiled.
+    """`model.runge_kutta.integrate`, compiled.
 
     Parameters
     ----------
     announce
         As for `compile_solver`.
     """
-    if announce is not None and not _is_cached("kernel.integrate"):
+    if announce is not None and not _is_cached("runge_kutta.integrate"):
         announce(COMPILING)
     return compiled("integrate")
 
 
 def lane_integrator(announce: Announce | None = None) -> Any:
-    """`model.lanes.integrate_lanes`, compiled.
+    """`model.lane_steps.integrate_lanes`, compiled.
 
     Parameters
     ----------
     announce
         As for `compile_solver`.
     """
-    if announce is not None and not _is_cached("lanes.integrate"):
+    if announce is not None and not _is_cached("lane_steps.integrate"):
         announce(COMPILING)
     return compiled("integrate_lanes")
 
 
 def _kernel_modules() -> tuple[ModuleType, ...]:
     """Modules whose functions are compiled; any of their functions may be called in the kernel."""
-    from model import cable, kernel, kinematics, lanes, loops, platform
+    from model import cable, kernel, kinematics, lane_steps, lanes, loops, platform, runge_kutta
     from model.library import assembled, bristle, context, smooth, taut_string
     from model.library import lanes as layout
     from model.library.discovery import effect_modules
@@ -93,7 +101,9 @@ def _kernel_modules() -> tuple[ModuleType, ...]:
         *effect_modules(),
         assembled,
         kernel,
+        runge_kutta,
         lanes,
+        lane_steps,
         loops,
     )
 
@@ -119,20 +129,21 @@ def _is_cached(name: str) -> bool:
 
 @cache
 def compiled(name: str) -> Any:
-    """A function of `SCALAR`, `LANE` or `LOOPS`, compiled or from the cache, at its first call."""
+    """A function of `CALLED`, compiled or from the cache, at its first call."""
     import numba
 
-    from model import kernel, lanes, loops
-
-    module: ModuleType = kernel if name in SCALAR else lanes if name in LANE else loops
-    options: dict[str, Any] = {"error_model": "numpy", **UNCOUNTED}
-    if name in LANE:
-        options["fastmath"] = FAST
+    module = import_module(f"model.{CALLED[name]}")
+    options: dict[str, Any] = {"error_model": "numpy", **UNCOUNTED, **_fast(module)}
     _compile_laws()
     folder = cache_folder()
     with machine_code.kept_in(folder):
         whole = getattr(module, name)
         return numba.njit(cache=folder is not None, nogil=True, **options)(whole)
+
+
+def _fast(module: ModuleType) -> dict[str, Any]:
+    inside = module.__name__.removeprefix("model.") in LANES
+    return {"fastmath": FAST} if inside else {}
 
 
 @cache
@@ -141,13 +152,8 @@ def _compile_laws() -> None:
     from numba.extending import register_jitable
 
     for module in _kernel_modules():
-        fast = {"fastmath": FAST} if module.__name__ == "model.lanes" else {}
         for law in vars(module).values():
             # Each where it is defined, once: modules also hold what they import from each other.
-            if (
-                isfunction(law)
-                and law.__module__ == module.__name__
-                and law.__name__ not in SCALAR + LANE + LOOPS
-            ):
+            if isfunction(law) and law.__module__ == module.__name__ and law.__name__ not in CALLED:
                 inline = {"forceinline": True} if law.__name__ in INLINE else {}
-                register_jitable(error_model="numpy", **UNCOUNTED, **fast, **inline)(law)
+                register_jitable(error_model="numpy", **UNCOUNTED, **_fast(module), **inline)(law)

@@ -31,7 +31,7 @@ def test_compiling_is_announced_where_nothing_is_cached(
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     compiled.integrator(said.append)
     assert said == [compiled.COMPILING]
-    (compiled.cache_folder() / "kernel.integrate-1.nbc").touch()
+    (compiled.cache_folder() / "runge_kutta.integrate-1.nbc").touch()
     compiled.integrator(said.append)
     assert len(said) == 1
 

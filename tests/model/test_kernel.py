@@ -3,11 +3,12 @@ import pytest
 from scipy.integrate import DOP853, RK45
 
 from cdpr8.rigfile import Excitation, Rig
-from model import compiled, dop853, kernel, simulate
+from model import compiled, dop853, simulate
 from model.extras import pack, state_count
 from model.library.discovery import kernel_effects
 from model.library.selection import ActiveEffect
 from model.method import METHODS, find_method
+from model.runge_kutta import first_beyond, integrate
 from model.task import Task
 from model.trajectory import rows_inside
 
@@ -47,16 +48,16 @@ def test_the_compiled_kernel_is_the_python_kernel(
     rig: Rig, effects: tuple[ActiveEffect, ...]
 ) -> None:
     plain, fast = problem(rig, 10, effects), problem(rig, 10, effects)
-    assert kernel.integrate(*plain) == compiled.integrator()(*fast)
+    assert integrate(*plain) == compiled.integrator()(*fast)
     assert fast[-1] == pytest.approx(plain[-1], rel=1e-9, abs=1e-12)
     assert plain[-1][20].any()
 
 
 def test_a_nan_counts_as_beyond_every_limit() -> None:
     limit = np.ones(3)
-    assert kernel.first_beyond(np.array([0.5, -0.9, 1.0]), limit) == -1
-    assert kernel.first_beyond(np.array([0.5, np.nan, 2.0]), limit) == 1
-    assert kernel.first_beyond(np.array([0.5, 0.0, -2.0]), limit) == 2
+    assert first_beyond(np.array([0.5, -0.9, 1.0]), limit) == -1
+    assert first_beyond(np.array([0.5, np.nan, 2.0]), limit) == 1
+    assert first_beyond(np.array([0.5, 0.0, -2.0]), limit) == 2
 
 
 def test_the_coefficients_of_dop853_are_scipys() -> None:
