@@ -38,6 +38,8 @@ class Row:
         Whether the figure should be at least the bar, or at most.
     percent
         Whether it is shown in per cent.
+    counts
+        Whether it is a share of cases.
     """
 
     figure: str
@@ -49,6 +51,7 @@ class Row:
     bar: float
     at_least: bool
     percent: bool
+    counts: bool = False
 
     @property
     def met(self) -> bool | None:
@@ -114,7 +117,10 @@ class _Figure:
             if numbers:
                 value = self.statistic(np.asarray(numbers, dtype=float))
                 low, high = bootstrap(numbers, self.statistic, generator)
-        return Row(self.name, kind, value, low, high, count, bar, self.at_least, self.percent)
+        counts = self.hits is not None
+        return Row(
+            self.name, kind, value, low, high, count, bar, self.at_least, self.percent, counts
+        )
 
 
 def _one(grades: Sequence[Grade]) -> list[Grade]:

@@ -93,6 +93,10 @@ def score(
     out: Folder,
     report: Annotated[Path | None, typer.Option(help="write the page of the proof here")] = None,
     remark: Annotated[str, typer.Option(help="what readers of that page must know")] = "",
+    keep: Annotated[
+        Path | None, typer.Option(help="keep truth and answers in this file, for `pool`")
+    ] = None,
+    engine: Annotated[str, typer.Option(help="what diagnosed them, for that file")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="results as JSON")] = False,
 ) -> None:
     """Open the seal and hold the answers against the truth.
@@ -108,6 +112,11 @@ def score(
         from analysis.challenge.report import write_report
 
         written += write_report(found, report, remark)
+    if keep is not None:
+        from analysis.challenge.kept import keep as keep_all
+
+        keep_all(out, keep, engine)
+        written.append(keep)
     if as_json:
         say_json(as_dictionary(found))
     else:
@@ -115,3 +124,22 @@ def score(
 
         say_table(printed(found.rows))
     note("written: " + ", ".join(str(path) for path in written))
+
+
+@app.command()
+def pool(
+    files: Annotated[list[Path], typer.Argument(help="sets kept by score --keep, oldest first")],
+    report: Annotated[Path | None, typer.Option(help="write the page of all sets here")] = None,
+) -> None:
+    """Grade all sets that were kept, together.
+
+    Example: analysis challenge pool docs/proof/*.json --report docs/proof-pooled.md
+    """
+    from analysis.challenge.kept import read_kept
+    from analysis.challenge.pool import pooled, write_page
+    from analysis.challenge.table import printed
+
+    sets = [read_kept(file) for file in files]
+    say_table(printed(pooled(sets)))
+    if report is not None:
+        note("written: " + ", ".join(str(path) for path in write_page(sets, report)))

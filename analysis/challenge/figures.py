@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".svg")
 
+HIGH = 0.95
+"""From here on a number stands below its dot: above, the frame would cut it."""
+
 
 def draw_confusion(confusion: Mapping[tuple[str, str], int], stem: Path) -> list[Path]:
     """Concealed down, named across; each row in shares of its cases.
@@ -84,10 +87,11 @@ def draw_calibration(pairs: Sequence[Sequence[float]], stem: Path) -> list[Path]
         x, y = chosen[:, 0].mean(), hits / of
         bars = [[max(y - low, 0.0)], [max(high - y, 0.0)]]
         axes.errorbar([x], [y], yerr=bars, fmt="o", color="tab:blue", capsize=2)
-        axes.annotate(str(of), (x, y), xytext=(5, 3), textcoords="offset points", fontsize=7)
+        beside = (5, 3) if y < HIGH else (5, -9)
+        axes.annotate(str(of), (x, y), xytext=beside, textcoords="offset points", fontsize=7)
     axes.set_xlabel("probability stated")
     axes.set_ylabel("share that was right")
-    axes.set_xlim(0, 1.02)
+    axes.set_xlim(0, 1.06)
     axes.set_ylim(0, 1.02)
     return _saved(figure, stem)
 

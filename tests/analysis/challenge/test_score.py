@@ -11,10 +11,13 @@ import pytest
 
 from analysis.challenge.bars import Row, miscalibration
 from analysis.challenge.intervals import bootstrap, wilson
+from analysis.challenge.kept import keep, read_kept
+from analysis.challenge.pool import pooled, write_page
 from analysis.challenge.report import write_report
 from analysis.challenge.run import answers_of, run
 from analysis.challenge.score import score, write_score
 from analysis.challenge.seal import seal
+from cdpr8.errors import DataError
 
 
 def concealed(name: str, size: float, cables: Sequence[int] = (), **changes: Any) -> dict[str, Any]:
@@ -186,6 +189,27 @@ def test_what_is_written_tells_the_same(answered: Path, tmp_path: Path) -> None:
     assert "| false alarm where nothing is concealed | 50 %" in text
     assert "case_0007 (single) | cable_viscous 9 N" in text
     assert (page.parent / "figures" / "proof_confusion.svg").stat().st_size > 1000
+
+
+def test_sets_that_were_kept_are_graded_again_together(answered: Path, tmp_path: Path) -> None:
+    kept = tmp_path / "sets" / "one.json"
+    keep(answered, kept, "abc1234")
+    again = read_kept(kept)
+    assert again.grades == score(answered).grades
+    assert [(row.value, row.of) for row in pooled([again])] == [
+        (row.value, row.of) for row in score(answered).rows
+    ]
+    assert {row.of for row in pooled([again, again])} == {2 * row.of for row in pooled([again])}
+    page = tmp_path / "pooled.md"
+    write_page([again], page)
+    assert "| mujoco 3 | abc1234 | 1 of 2 |" in page.read_text()
+
+
+def test_what_is_no_kept_set_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "other.json"
+    path.write_text('{"format": "another"}')
+    with pytest.raises(DataError, match="not a kept set"):
+        read_kept(path)
 
 
 def test_intervals_are_the_published_ones() -> None:
