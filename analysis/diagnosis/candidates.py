@@ -140,11 +140,16 @@ LENGTH = "length of the cables"
 LENGTHS = ("pretension", "cable_slack")
 """A cable that is too long pulls less from the start: only where it then hangs is it another."""
 
+STIFFER = "stiffness that rises with the tension"
+STIFFENINGS = ("cable_stiffening", "cable_sag")
+"""The chord of a cable that hangs through, and fibres that are stretched straight."""
+
 FAMILIES = (
     dict.fromkeys(FRICTIONS, FRICTION)
     | dict.fromkeys(DRAGS, DRAG)
     | dict.fromkeys(LOSSES, LOSS)
     | dict.fromkeys(LENGTHS, LENGTH)
+    | dict.fromkeys(STIFFENINGS, STIFFER)
 )
 
 WHOLE = ("left_at_rest", "reads_up", "drive_pushes", "disturbed_late_share", "held_share")

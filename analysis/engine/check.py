@@ -6,14 +6,20 @@ rings takes long to simulate, and is mostly a machine that states itself.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.part import rings
-from analysis.engine.stated import check_bundles, check_candidates, check_nuisances, name_of
+from analysis.engine.stated import (
+    check_bundles,
+    check_candidates,
+    check_lists,
+    check_nuisances,
+    name_of,
+)
 from analysis.engine.system import Bundle, Candidate, Point, Prediction, Setting, System
 from cdpr8.errors import DataError
 
@@ -48,6 +54,7 @@ def check(system: System) -> tuple[str, ...]:
             allowed="an object with " + ", ".join(PARTS),
             remedy="see docs/engine.md, 'What you write'",
         )
+    check_lists(system)
     check_bundles(system.bundles)
     check_candidates(system.candidates)
     check_nuisances(system)
@@ -90,7 +97,8 @@ def _each(system: System, nominal: Point, at: Prediction) -> tuple[str, ...]:
             "neither a parameter nor a candidate changes what is simulated",
             allowed="a simulation that goes by the point it is given",
             where="simulate",
-            remedy="use point.nuisance (in sigmas) and point.effects",
+            remedy="use point.nuisance (in sigmas) and point.effects, and hand `reduce` arrays "
+            "that the next point does not overwrite",
         )
     if system.nuisances and all(
         f"nuisance {one.name!r} at its step" in idle for one in system.nuisances
@@ -112,14 +120,17 @@ def _on(nominal: Point, candidate: Candidate, term: str) -> Point:
     return replace(nominal, effects={candidate.name: Setting(values, shapes)})
 
 
-def _as_it_is(prediction: Prediction) -> Prediction:
-    return prediction
+@dataclass(frozen=True)
+class _Handed:
+    """What was handed to `reduce`."""
+
+    prediction: Prediction
 
 
 def _simulated(system: System, points: Sequence[Point], what: str) -> list[Any]:
     simulate: Callable[..., Any] = system.simulate
     try:
-        found = simulate(points, _as_it_is)
+        found = simulate(points, _Handed)
     except Exception as error:
         raise DataError(
             f"the simulation of {what} raised {type(error).__name__}: {error}",
@@ -134,7 +145,14 @@ def _simulated(system: System, points: Sequence[Point], what: str) -> list[Any]:
             where="simulate",
             remedy="return [reduce(predict(point)) for point in points]",
         )
-    return list(found)
+    if not all(isinstance(one, _Handed) for one in found):
+        raise DataError(
+            "simulate returns something else than what `reduce` makes of a prediction",
+            allowed="reduce(prediction) for each point",
+            where="simulate",
+            remedy="return [reduce(predict(point)) for point in points]",
+        )
+    return [one.prediction for one in found]
 
 
 def _check_prediction(bundles: Sequence[Bundle], found: Any, what: str) -> None:
@@ -156,6 +174,12 @@ def _check_prediction(bundles: Sequence[Bundle], found: Any, what: str) -> None:
                 where=f"simulate, {name_of(bundle, i)}",
                 remedy="one row for each sample time, one column for each channel",
             )
+        if np.iscomplexobj(seen):
+            raise DataError(
+                f"the simulation of {what} is complex", allowed="real numbers",
+                where=f"simulate, {name_of(bundle, i)}",
+                remedy="a real and an imaginary part are two channels",
+            )  # fmt: skip
         inside = looked_at(bundle)
         bad = np.flatnonzero(~np.isfinite(np.asarray(seen, dtype=float)[inside]).all(axis=1))
         if bad.size:

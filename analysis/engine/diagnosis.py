@@ -1,7 +1,7 @@
 """The whole of it: calibrate, locate, search, judge, confirm."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -15,10 +15,12 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
+from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
 from analysis.engine.search import REMAINS_ALONE, Search, search
 from analysis.engine.system import Array, System
 from analysis.engine.until import Until
+from cdpr8.errors import UsageError
 
 Stage = Literal["align", "locate", "name", "confirm"]
 
@@ -35,6 +37,11 @@ FORETOLD = (
     "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
     "resonance, does that, cables that stick and slip or go slack do, and so does something that "
     "only begins then; another frequency of the drive tells which"
+)
+
+MOVED = (
+    "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it: a number that is off "
+    "is named where it is a candidate's, which `Nuisance.cause` and `term` say"
 )
 
 
@@ -129,7 +136,14 @@ def diagnose(
     ------
     DataError
         Something that the system states, or that it simulates, cannot be.
+    UsageError
+        There is no such stage.
     """
+    if stop_after not in (None, *get_args(Stage)):
+        raise UsageError(
+            f"stop_after is {stop_after!r}", allowed=", ".join(get_args(Stage)),
+            remedy="None: to the end",
+        )  # fmt: skip
     notes = check(system)
     if stop_after in ("align", "locate"):
         seen = look(system, tell)
@@ -147,6 +161,7 @@ def diagnose(
         searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside,
         settled=not rings(system), moved=searched.moved,
     )  # fmt: skip
+    notes = (*notes, *_moved(system, judgement))
     remains = _remains(searched, judgement, noise)
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
@@ -155,10 +170,21 @@ def diagnose(
     )
 
 
+def _moved(system: System, judgement: Judgement) -> list[str]:
+    """Parameters that no candidate can be named for, and that moved too far."""
+    if rings(system):
+        return []
+    at = judgement.chosen.point.nuisance
+    far = [(one, x) for one, x in zip(system.nuisances, at, strict=True) if abs(x) > EVEN]
+    return [MOVED.format(name=one.name, sigmas=x) for one, x in far if one.cause is None]
+
+
 def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:
     chosen = judgement.chosen
     problem = chosen.problem
-    scaled = _allowed(chosen.remaining, chosen.weighed.variance, problem.base)
+    # What does not ring was simulated where parameters are likeliest: no straight line is needed.
+    residual = chosen.remaining if rings(searched.system) else problem.residual
+    scaled = _allowed(residual, chosen.weighed.variance, problem.base)
     found = locate(searched.system.bundles, problem, np.where(problem.used, scaled, 0.0))
     if searched.faint and not np.isnan(chosen.left):
         most = noise + (REMAINS if chosen.hypothesis.parts else REMAINS_ALONE)

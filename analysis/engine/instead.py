@@ -61,6 +61,10 @@ def instead(
     hypothesis = state.hypothesis.without(known)
     hypothesis = hypothesis.plus(other, Part(tuple(one.name for one in terms), shared, shapes))
     strong = {(other, one.name): float(np.mean(sizes[one.place])) * one.step for one in terms}
+    if new.grows:
+        # Its square: a little of it is as good as none, and led nowhere. As screened, on average.
+        mean = float(np.mean([abs(strong[other, one.name]) / one.step for one in terms]))
+        strong = {name: value / mean for name, value in strong.items()} if mean else strong
     for one in terms:
         # What one law counts as less another may count as more of something.
         if one.low >= 0.0:

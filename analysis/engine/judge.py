@@ -31,6 +31,10 @@ that explain it: the more there is, the more their form counts."""
 MOST_AT_NOISE = 20.0
 """But by no more than this, where the best comes to the noise: its form has shown to be right."""
 
+OF_LEFT = 3.0
+"""But what leaves ten times as much, squared, as the likeliest is a thousand times less likely,
+however little scores count: their temper has forgiven laws their form, all of them alike."""
+
 MOST_OF_STRAIN = 6.0
 """And by no more than this of what parameters cost that are far from what is known of them: no
 error of form makes that likelier."""
@@ -170,11 +174,7 @@ def judge(
         temper = min(temper, MOST_AT_NOISE)
         scores = _strained(scores, fitted, temper)
     scores = _among_kin(scores, fitted, candidates, temper)
-    # However little scores count, one cause more is no likelier beforehand.
-    causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
-    logs = (scores - scores.max()) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
+    weights = _weights(scores, fitted, temper, settled=settled)
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )
@@ -226,6 +226,24 @@ def doubt_of(
     form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)
     beyond = max(fitted.left - noise, 0.0) / max(DOUBTFUL * form, SUREST)
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
+
+
+def _weights(scores: Array, fitted: Sequence[Fitted], temper: float, *, settled: bool) -> Array:
+    """Probabilities of hypotheses whose scores count for less, by a temper."""
+    # However little scores count, one cause more is no likelier beforehand.
+    causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
+    first = int(np.argmax(scores))
+    logs = (scores - scores[first]) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
+    if settled:
+        logs = np.minimum(logs, logs[first] - _more_left(fitted, fitted[first]))
+    weights = np.exp(logs - logs.max())
+    return np.asarray(weights / weights.sum())
+
+
+def _more_left(fitted: Sequence[Fitted], best: Fitted) -> Array:
+    """By how much less likely each is than the best, for what more it leaves, as a logarithm."""
+    left = np.array([max(one.left, 1.0) if np.isfinite(one.left) else np.inf for one in fitted])
+    return np.asarray(OF_LEFT * np.log(np.maximum(left / max(best.left, 1.0), 1.0)))
 
 
 def _any_would_do(chosen: Fitted, candidate: Candidate) -> float:

@@ -18,6 +18,7 @@ from scipy.fft import dct
 from analysis.engine.system import Array, Bundle, Prediction, Segment
 from analysis.engine.tones import drive_frequency_hz, leaked, rings, rings_near
 from analysis.engine.whiten import covariance_over
+from cdpr8.errors import DataError
 
 HARMONICS = 10
 """The drive's harmonics that are looked at."""
@@ -217,6 +218,14 @@ class Lens:
             Shape (f,). Channels of a bundle are made independent by the inverse Cholesky factor
             of their covariance: a feature is of its channel less what those before it tell.
         """
+        for place, (bundle, seen) in enumerate(zip(self.bundles, prediction, strict=True)):
+            if np.shape(seen) != bundle.value.shape:
+                raise DataError(
+                    f"a simulation of bundle {place} has shape {np.shape(seen)}",
+                    allowed=f"{bundle.value.shape}, as its `value` has", where="simulate",
+                    remedy="one row for each sample time, whatever the point: NaN where there is "
+                    "nothing",
+                )  # fmt: skip
         found = []
         for part in self._parts:
             samples = prediction[part.bundle][part.rows]

@@ -1,6 +1,7 @@
 """A hypothesis fitted in earnest: simulated again with everything free, until it stays."""
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -81,6 +82,14 @@ class Refiner:
             self._problem = replace(
                 calibrated.problem, nuisance=calibrated.columns, at=calibrated.at
             )
+
+    def exact(self) -> "Refiner":
+        """The same, for which laws have no error of form."""
+        found = copy(self)
+        found.candidates = {
+            name: replace(one, form_share=0.0) for name, one in self.candidates.items()
+        }
+        return found
 
     def nothing(self) -> Fitted:
         """Nothing left out, parameters fitted."""

@@ -15,6 +15,7 @@ import numpy as np
 from analysis.engine.cause import within_sigma
 from analysis.engine.finder import SMALL
 from analysis.engine.fitted import Fitted
+from analysis.engine.judge import NOISE
 from analysis.engine.refine import FAR_SIGMAS, SETTLED, Refiner
 from analysis.engine.state import State
 from analysis.engine.variance import base_variance
@@ -37,6 +38,9 @@ WORTH = 12.0
 
 RUNG = 3.0
 """Sizes of a law that are tried differ by this."""
+
+EXACT = 5
+"""So many of the likeliest are tried as if their laws were exact."""
 
 TURNS = 3
 """A fit that ends at another place than it began is begun there again, so often."""
@@ -75,6 +79,8 @@ def settled(
             break
     known = {one.hypothesis.names for one in done.values()}
     found = [_counted(refiner, one, refiner.settle(one)) for one in done.values()]
+    found.sort(key=lambda one: -one.log_score)
+    found[:EXACT] = [_exactly(refiner, one) for one in found[:EXACT]]
     # What was fitted with older columns, and is far behind, is counted where it is.
     found += [_counted(refiner, one, one) for one in waiting if one.hypothesis.names not in known]
     return sorted(found, key=lambda one: -one.log_score)
@@ -204,9 +210,33 @@ def _on_ladder(refiner: Refiner, fitted: Fitted) -> State | None:
     return best
 
 
+def _exactly(refiner: Refiner, fitted: Fitted) -> Fitted:
+    """Where it stays if its laws are exact, where that leaves no more than noise; else as it is.
+
+    Beside an error of form the recording counts for little, and parameters stay where they are
+    likeliest beforehand: with what a law leaves there it would be doubted. One that leaves no more
+    than noise anywhere has no such error.
+    """
+    forms = [refiner.candidates[name].form_share for name in fitted.hypothesis.names]
+    if fitted.left < NOISE or not max(forms, default=0.0):
+        return fitted
+    exact = refiner.exact()
+    there = rested(exact, exact.at(fitted.state, fitted.problem.at))
+    found = refiner.at(there.state, there.problem.at)
+    found = _counted(refiner, found, found)
+    if not found.left < NOISE:
+        return fitted
+    return replace(found, log_score=max(found.log_score, fitted.log_score))
+
+
 def _counted(refiner: Refiner, fitted: Fitted, there: Fitted) -> Fitted:
-    """With what it leaves: of a feature, squared, in noise and the simulator's own error."""
+    """Where its nuisances are likeliest, with what it leaves there.
+
+    That is of a feature, squared, in noise and the simulator's own error.
+    """
     used = there.problem.used
     variance = base_variance(refiner.lens, there.features, refiner.data)
     left = float(np.mean(there.problem.residual[used] ** 2 / variance[used]))
-    return replace(fitted, left=left if np.isfinite(fitted.log_score) else np.inf)
+    if not np.isfinite(fitted.log_score):
+        return replace(fitted, left=np.inf)
+    return replace(there, log_score=fitted.log_score, left=left)

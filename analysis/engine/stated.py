@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from analysis.engine.part import records_of, rings
-from analysis.engine.system import Bundle, Candidate, Segment, Shape, System, Term
+from analysis.engine.system import Bundle, Candidate, Nuisance, Segment, Shape, System, Term
 from cdpr8.errors import DataError
 
 LEAST_SAMPLES = 3
@@ -20,6 +20,47 @@ def name_of(bundle: Bundle, place: int) -> str:
     """Which bundle it is, in words."""
     names = ", ".join(map(str, bundle.names)) if isinstance(bundle.names, tuple) else "?"
     return f"bundle {place} ({bundle.record + ': ' if bundle.record else ''}{names})"
+
+
+def check_lists(system: Any) -> None:
+    """Whether what a system states are lists of the engine's own things, and arrays in them.
+
+    Raises
+    ------
+    DataError
+        Something is not what it should be.
+    """
+    for what, kind in (("bundles", Bundle), ("nuisances", Nuisance), ("candidates", Candidate)):
+        _check_list(getattr(system, what), kind, what)
+    for i, bundle in enumerate(system.bundles):
+        where = name_of(bundle, i)
+        _check_list(bundle.segments, Segment, f"{where}, segments")
+        _check_list(bundle.tones_hz, (int, float, np.number), f"{where}, tones_hz")
+        for what in ("t_s", "value"):
+            if not isinstance(getattr(bundle, what), np.ndarray):
+                raise DataError(
+                    f"{what} is a {type(getattr(bundle, what)).__name__}",
+                    allowed="an array of numbers", where=where, remedy="np.asarray(...)",
+                )  # fmt: skip
+    for one in system.candidates:
+        where = f"candidate {one.name!r}"
+        _check_list(one.terms, Term, f"{where}, terms")
+        _check_list(one.shapes, Shape, f"{where}, shapes")
+
+
+def _check_list(found: Any, kind: Any, where: str) -> None:
+    name = getattr(kind, "__name__", "number")
+    if not isinstance(found, list | tuple):
+        raise DataError(
+            f"a {type(found).__name__}", allowed=f"a tuple of {name}", where=where,
+            remedy="of one, (it,) with the comma",
+        )  # fmt: skip
+    for place, one in enumerate(found):
+        if not isinstance(one, kind):
+            raise DataError(
+                f"a {type(one).__name__} in place {place}", allowed=name, where=where,
+                remedy="see docs/engine.md, 'What you write'",
+            )  # fmt: skip
 
 
 def check_bundles(bundles: Sequence[Bundle]) -> None:
@@ -72,7 +113,9 @@ def _check_form(bundle: Bundle, where: str) -> None:
                 where=where, remedy='of one channel, ("x",)',
             )  # fmt: skip
     _check_times(np.asarray(bundle.t_s, dtype=float), where)
-    _check_number("base_share", bundle.base_share, where, least=0.0)
+    _check_number("base_share", bundle.base_share, where, least=0.0, most=1.0)
+    for tone_hz in bundle.tones_hz:
+        _check_number("a tone of tones_hz", tone_hz, where, above=0.0)
 
 
 def _check_times(t_s: Any, where: str) -> None:
@@ -209,7 +252,7 @@ def check_candidates(candidates: Sequence[Candidate]) -> None:
         names = [term.name for term in one.terms]
         _check_unique(names, "term", where)
         _check_unique([shape.name for shape in one.shapes], "shape", where)
-        _check_number("form_share", one.form_share, where, least=0.0)
+        _check_number("form_share", one.form_share, where, least=0.0, most=1.0)
         _check_number("prior", one.prior, where, above=0.0)
         unknown = sorted({term for whole in one.combinations for term in whole} - set(names))
         if unknown:
@@ -269,10 +312,17 @@ def _check_range(low: float, high: float, where: str) -> None:
 
 
 def _check_number(
-    what: str, value: float, where: str, *, least: float = -np.inf, above: float = -np.inf
+    what: str,
+    value: float,
+    where: str,
+    *,
+    least: float = -np.inf,
+    above: float = -np.inf,
+    most: float = np.inf,
 ) -> None:
-    if not (np.isfinite(value) and value >= least and value > above):
+    if not (np.isfinite(value) and value >= least and value > above and value <= most):
         allowed = f"above {above:g}" if above > -np.inf else f"{least:g} or more"
+        allowed = f"{least:g} to {most:g}" if most < np.inf else allowed
         raise DataError(f"{what} is {value!r}", allowed=allowed, where=where,
                         remedy="see docs/engine.md, 'What you write'")  # fmt: skip
 

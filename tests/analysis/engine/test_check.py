@@ -157,7 +157,16 @@ WRONG: dict[str, tuple[Callable[[], Any], str, str]] = {
     "no noise": (lambda: bundle(covariance=np.zeros((1, 1))), "not positive definite", "bundle 0"),
     "negative noise": (lambda: bundle(covariance=-np.eye(1)), "not positive definite", "bundle 0"),
     "NaN noise": (lambda: bundle(covariance=np.full((1, 1), np.nan)), "nan", "symmetric"),
-    "own error": (lambda: bundle(base_share=-0.1), "base_share is -0.1", "0 or more"),
+    "own error": (lambda: bundle(base_share=-0.1), "base_share is -0.1", "0 to 1"),
+    "per cent": (lambda: bundle(base_share=5.0), "base_share is 5.0", "0 to 1"),
+    "a list": (lambda: bundle(value=VALUE.tolist()), "value is a list", "bundle 0 (x)"),
+    "one bundle": (lambda: other(bundles=Line().bundles[0]), "a Bundle", "bundles"),
+    "one segment": (lambda: bundle(segments=Segment(0.0, 9.0)), "a Segment", "segments"),
+    "one tone": (lambda: bundle(tones_hz=1.0), "a float", "tones_hz"),
+    "no tone": (lambda: bundle(tones_hz=(-1.0,)), "tones_hz is -1.0", "above 0"),
+    "one candidate": (lambda: other(candidates=BEND), "a Candidate", "candidates"),
+    "one term": (lambda: candidate(terms=BEND.terms[0]), "a Term", "candidate 'bend', terms"),
+    "no bundle": (lambda: other(bundles=(1,)), "a int in place 0", "Bundle"),
     "sigma 0": (lambda: nuisance(sigma=0.0), "sigma is 0", "nuisance 'slope'"),
     "sigma NaN": (lambda: nuisance(sigma=np.nan), "sigma is nan", "nuisance 'slope'"),
     "step 0": (lambda: nuisance(step=0.0), "step is 0", "nuisance 'slope'"),
@@ -169,6 +178,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str, str]] = {
     "no terms": (lambda: other(candidates=(replace(RIPPLE, terms=()),)), "no terms", "'ripple'"),
     "terms twice": (lambda: candidate(terms=2 * BEND.terms), "one term is called", "'bend'"),
     "form": (lambda: candidate(form_share=-1.0), "form_share is -1", "candidate 'bend'"),
+    "form per cent": (lambda: candidate(form_share=5.0), "form_share is 5", "0 to 1"),
     "odds": (lambda: candidate(prior=0.0), "prior is 0", "candidate 'bend'"),
     "combination": (lambda: candidate(combinations=(("y",),)), "name 'y'", "'bend'"),
     "range": (lambda: term(low=1.0, high=0.0), "low 1, high 0", "term 'bend'"),
@@ -193,6 +203,8 @@ WRONG: dict[str, tuple[Callable[[], Any], str, str]] = {
     "no parameter": (lambda: simulated(
         lambda a, p: a.predict(replace(p, nuisance=np.zeros(2)))
     ), "no nuisance changes", "in sigmas"),
+    "complex": (lambda: simulated(lambda a, p: [a.predict(p)[0] + 0j]), "complex", "channels"),
+    "unreduced": (lambda: lists(lambda p, _: [Line().predict(a) for a in p]), "reduce", "simul"),
     "nothing back": (lambda: lists(lambda _, reduce: None), "NoneType", "for 1 points"),
     "too few": (lambda: lists(lambda p, reduce: [reduce(Line().predict(p[0]))]), "1 results", "4"),
 }  # fmt: skip
@@ -206,6 +218,18 @@ def test_what_cannot_be_is_said(name: str) -> None:
     said = str(error.value)
     assert what in said
     assert where in said
+
+
+def test_a_simulation_that_ends_early_later_on_is_said() -> None:
+    count = 0
+
+    def shorter(line: Line, point: Point) -> Prediction:
+        nonlocal count
+        count += 1
+        return [one[: -1 if count > 40 else None] for one in line.predict(point)]
+
+    with pytest.raises(DataError, match=r"bundle 0 has shape \(199, 1\)"):
+        diagnose(simulated(shorter))
 
 
 def test_what_is_right_passes() -> None:

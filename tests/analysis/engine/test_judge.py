@@ -223,3 +223,22 @@ def test_what_samples_show_is_there_where_nothing_can_be_followed(
     if lost:
         assert said.verdict != "unexplained"
         assert said.causes[0].probability > CERTAIN
+
+
+def test_what_leaves_ten_times_as_much_is_not_likelier_for_having_a_cause_less(
+    refiner: Refiner,
+) -> None:
+    # Laws of uncertain form: of a score of ten thousand, the temper leaves a few.
+    known = {name: replace(one, form_share=0.3) for name, one in CANDIDATES.items()}
+    one = state_of(DAMPING, 0.2)
+    both = one.hypothesis.plus("step", state_of(STEP, 1.0, moment=4.0).hypothesis.parts["step"])
+    values = {("damping", "rate"): 0.2, ("step", "high"): 1.0}
+    hypotheses = [
+        fitted(refiner, one, -9_000.0, 600.0),
+        fitted(refiner, State.at(both, values, CANDIDATES), -4_000.0, 60.0),
+        fitted(refiner, None, -100_000.0, 30_000.0),
+    ]
+    hypotheses = [replace(one, sigmas=dict.fromkeys(one.values, 1e-3)) for one in hypotheses]
+    said = judge(hypotheses, known, settled=True)
+    assert said.probability[1] > 0.9
+    assert judge(hypotheses, known).probability[1] < said.probability[1]
