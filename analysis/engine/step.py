@@ -22,6 +22,11 @@ DAMPINGS = (10.0, 100.0, 1e3, 1e4, 1e6, 1e8)
 ABREAST = 2
 """So many are simulated together, where the second may turn out not to be wanted."""
 
+OUT, TIMES_BACK, BACK = (1.0, 0.5, 0.25), 4, 100.0
+"""Shares of a step that leads out of a valley that turns, from where it is brought back, at most so
+often, as if everything were known so much better there: what is known well stays, and the rest
+moves no further."""
+
 MORE, LONGER, LONGEST = 1.25, 2.0, 4.0
 """One that brings so much more than it promises is taken farther, up to that many times."""
 
@@ -98,6 +103,10 @@ class Stepper:
         damped = (matrix + damping * known for damping in DAMPINGS)
         shorter = (bounded(one, right, lows, highs) for one in damped)
         found = self._best(chain([target], shorter), HALFWAY * promised)
+        if found.fell < HALFWAY * promised:
+            stiff = matrix + BACK * known
+            back = self._brought_back(target, columns, stiff, (lows, highs))
+            found = next((one for one in back if one.fell > MORE * found.fell), found)
         # Along a valley that turns, differences promise too little: a step is too short.
         times = LONGER
         while times <= LONGEST and found.fell > MORE * promised:
@@ -120,6 +129,40 @@ class Stepper:
                 best = one if best is None else max(best, one, key=lambda step: step.fell)
         assert best is not None
         return best
+
+    def _brought_back(
+        self, target: Array, columns: Array, stiff: Array, bounds: tuple[Array, Array]
+    ) -> Iterator[Step]:
+        """Along a valley that turns: out of it by a share of the step, and back.
+
+        Back goes by the same differences, in directions that the samples tell well. That is what
+        the second order along the step would do (Transtrum and Sethna 2011), again and again, for a
+        simulation each.
+
+        Parameters
+        ----------
+        target
+            The step, shape (k,).
+        columns
+            What one unit of each number does to the samples that count, shape (k, n).
+        stiff
+            Their normal equations, as if everything were known better, shape (k, k).
+        bounds
+            Of the step, shapes (k,).
+        """
+        lows, highs = bounds
+        for share in OUT:
+            change = share * target
+            (there,) = self._along([change])
+            for _ in range(TIMES_BACK):
+                off = self._known.information @ (there.there.numbers - self._known.at)
+                right = columns @ there.residual[self._inside] - off
+                change = change + bounded(stiff, right, lows - change, highs - change)
+                (closer,) = self._along([change])
+                if closer.fell <= there.fell:
+                    break
+                there = closer
+            yield there
 
     def _along(self, changes: Sequence[Array]) -> list[Step]:
         """What steps come to."""
