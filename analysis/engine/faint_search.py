@@ -108,6 +108,16 @@ def promised_by(found: Faint, refiner: Refiner, scored: Scored) -> float:
     return 2.0 * float(found.problem.base.mean()) * (after - before)
 
 
+def eased_by(found: Faint, refiner: Refiner, scored: Scored) -> float:
+    """By how much less parameters are promised to cost with one cause more than with what is on.
+
+    What is on may not have come to where they are likeliest: what they would cost less without any
+    cause is none's.
+    """
+    on, more = (nuisances_of(found, one) for one in (_about(found, refiner).null(), scored))
+    return float(on @ on - more @ more)
+
+
 def _promises(found: Faint, refiner: Refiner, explains: float) -> tuple[float, list[Scored]]:
     """The score of what is on, and `one_more`."""
     asked = {name for name, _ in found.terms}

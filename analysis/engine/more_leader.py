@@ -10,7 +10,7 @@ from analysis.engine.all_samples import (
     rise_beside_form,
 )
 from analysis.engine.faint import Faint
-from analysis.engine.faint_search import nuisances_of, one_more, promised_by
+from analysis.engine.faint_search import eased_by, nuisances_of, one_more, promised_by
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import lead_from, lead_instead, part_of_the_way
@@ -127,8 +127,7 @@ class MoreLeader(RivalLeader):
         falls = promised_by(found, self._refiner, scored)
         count = len(self._samples.shares)
         # What parameters no longer make up for is hidden in no error of form.
-        there = nuisances_of(found, scored)
-        eased = best.strain - float(there @ there)
+        eased = eased_by(found, self._refiner, scored)
         explains = max(falls - eased, 0.0)
         rise = rise_beside_form(self._refiner, best, self._nothing, count, explains)
         rise += 0.5 * min(eased, falls)
