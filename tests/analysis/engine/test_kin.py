@@ -55,6 +55,17 @@ def test_it_is_as_strong_in_the_same_places() -> None:
     }
 
 
+def test_what_goes_with_its_square_begins_at_the_size_it_is_screened_at() -> None:
+    known = {**CANDIDATES, "capstan": replace(CAPSTAN, grows=True)}
+    state = replace(dry_on(**{"size@2": 1e-3, "size@3": 3e-3}), candidates=known)
+    found = instead(state, "dry", "capstan")
+    assert found is not None
+    assert found.term_values() == {
+        ("capstan", "size@2"): pytest.approx(0.01),
+        ("capstan", "size@3"): pytest.approx(0.03),
+    }
+
+
 def test_numbers_of_shape_that_both_have_stay_as_far_as_they_may() -> None:
     found = instead(dry_on(**{"size@2": 0.3}), "dry", "capstan")
     assert found is not None

@@ -55,3 +55,12 @@ def test_a_valley_that_turns_is_followed_to_its_lowest_point(
     assert found.misfit + found.strain < float(truth @ truth) + 2.0 + WORTH_A_STEP
     assert found.nuisance[0] == pytest.approx(1.0, abs=0.1)
     assert found.left == pytest.approx(1.0, abs=0.15)
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0), (2.0, 4.0), (3.0, 9.0)])
+def test_along_a_steep_valley_steps_lead_out_of_it_and_back(start: tuple[float, float]) -> None:
+    # Damped steps, which stay in it, stop far from its lowest point, or creep.
+    valley = Valley(100.0)
+    found = follow_ring(valley, np.array(start), everything=True, near=True)
+    (truth,) = Samples(valley, everything=True).residuals([Point(np.array([1.0, 1.0]))])
+    assert found.misfit + found.strain < float(truth @ truth) + 2.0 + WORTH_A_STEP
