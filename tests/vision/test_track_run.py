@@ -69,7 +69,10 @@ def test_two_processes_see_what_one_sees(take, packaged_text, tmp_path, monkeypa
     monkeypatch.setattr("vision.watched.LEAST", 40)
     steps: list[int] = []
     together = track_run(run, workers=2, step=lambda: steps.append(1))
-    pd.testing.assert_frame_equal(together, alone, check_exact=True)
+    # Sums differ in their last digits by where arrays lie in memory, flags and times not at all.
+    pd.testing.assert_frame_equal(together, alone, rtol=1e-9, atol=1e-9)
+    exact = list(together.select_dtypes("integer"))
+    pd.testing.assert_frame_equal(together[exact], alone[exact], check_exact=True)
     assert FrameFlag(int(together["flags"][40])) == FrameFlag.REPEATED
     assert len(steps) == len(images)
 
