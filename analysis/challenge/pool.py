@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.challenge.bars import KINDS, Row, rows, stated
+from analysis.challenge.bars import KINDS, Row, rows
 from analysis.challenge.grade import Grade
 from analysis.challenge.kept import Kept
-from analysis.challenge.report import shown, table
+from analysis.challenge.report import calibration, shown, table
 
 HEADER = """# Proof on concealed data: all sets kept
 
@@ -71,7 +71,11 @@ def sets_table(sets: Sequence[Kept], kind: str) -> str:
     """One set a line; empty where no set has cases of the kind."""
     heads = ["set", "engine", "false alarms", "in the set", "alone", "both of two", "cables",
              "number", "held out", "median (longest)"]  # fmt: skip
-    lines = [f"**{kind.capitalize()}s**\n", "| " + " | ".join(heads) + " |", "|---" * 10 + "|"]
+    lines = [
+        f"**{kind.capitalize()}s**\n",
+        "| " + " | ".join(heads) + " |",
+        "|---" * len(heads) + "|",
+    ]
     for one in reversed(sets):
         grades = [grade for grade in done(one) if grade.kind == kind]
         if not grades:
@@ -102,16 +106,7 @@ def write_page(sets: Sequence[Kept], path: Path) -> list[Path]:
     list of Path
         What was written.
     """
-    from analysis.challenge.figures import draw_calibration
-
-    text, written = page(sets), []
-    pairs = stated([one for each in sets for one in done(each)])
-    if pairs:
-        figures = path.parent / "figures"
-        figures.mkdir(parents=True, exist_ok=True)
-        written = draw_calibration(pairs, figures / f"{path.stem}_calibration")
-        text += "\n## Calibration\n\n![share that was right against the probability stated]"
-        text += f"(figures/{path.stem}_calibration.svg)\n"
+    calibrated, drawn = calibration([one for each in sets for one in done(each)], path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
-    return [path, *written]
+    path.write_text(page(sets) + calibrated, encoding="utf-8")
+    return [path, *drawn]

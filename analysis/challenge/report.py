@@ -1,8 +1,10 @@
 """docs/proof.md and its like: what the challenge came to, written from the score alone."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from analysis.challenge.bars import KINDS, Row
+from analysis.challenge.bars import KINDS, Row, stated
+from analysis.challenge.grade import Grade
 from analysis.challenge.plants import FIRST, plant_named
 from analysis.challenge.score import Score
 
@@ -138,8 +140,7 @@ def write_report(score: Score, path: Path, remark: str = "") -> list[Path]:
     list of Path
         What was written.
     """
-    from analysis.challenge.bars import stated
-    from analysis.challenge.figures import draw_calibration, draw_confusion
+    from analysis.challenge.figures import draw_confusion
 
     figures = path.parent / "figures"
     figures.mkdir(parents=True, exist_ok=True)
@@ -147,10 +148,29 @@ def write_report(score: Score, path: Path, remark: str = "") -> list[Path]:
     written = draw_confusion(score.confusion, figures / f"{path.stem}_confusion")
     text += "\n## Confusion\n\n![what was concealed against what was named]"
     text += f"(figures/{path.stem}_confusion.svg)\n"
-    pairs = stated(score.grades)
-    if pairs:
-        written += draw_calibration(pairs, figures / f"{path.stem}_calibration")
-        text += "\n## Calibration\n\n![share that was right against the probability stated]"
-        text += f"(figures/{path.stem}_calibration.svg)\n"
+    calibrated, drawn = calibration(score.grades, path)
+    text, written = text + calibrated, [*written, *drawn]
     path.write_text(text, encoding="utf-8")
     return [path, *written]
+
+
+def calibration(grades: Sequence[Grade], page: Path) -> tuple[str, list[Path]]:
+    """The part of a page on calibration, and its figure's files, in `figures/` beside the page.
+
+    Parameters
+    ----------
+    grades
+        Of all cases; where none states a probability, there is no such part.
+    page
+        Where it is to stand.
+    """
+    from analysis.challenge.figures import draw_calibration
+
+    pairs = stated(grades)
+    if not pairs:
+        return "", []
+    figures = page.parent / "figures"
+    figures.mkdir(parents=True, exist_ok=True)
+    drawn = draw_calibration(pairs, figures / f"{page.stem}_calibration")
+    text = "\n## Calibration\n\n![share that was right against the probability stated]"
+    return text + f"(figures/{page.stem}_calibration.svg)\n", drawn
