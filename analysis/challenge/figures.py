@@ -97,9 +97,12 @@ def draw_calibration(pairs: Sequence[Sequence[float]], stem: Path) -> list[Path]
 
 
 def _saved(figure: "Figure", stem: Path) -> list[Path]:
+    from matplotlib import rc_context
+
     paths = [stem.with_suffix(suffix) for suffix in SUFFIXES]
     for path in paths:
         # The same bytes for the same score: neither date nor random identifiers.
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        figure.savefig(path, dpi=150, metadata=metadata)
+        with rc_context({"svg.hashsalt": "cdpr8"}):
+            figure.savefig(path, dpi=150, metadata=metadata)
     return paths
