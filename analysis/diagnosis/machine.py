@@ -130,6 +130,22 @@ class RecordedMachine:
         )
         return found
 
+    def known_as(self, known: Sequence[Nuisance]) -> "RecordedMachine":
+        """The same machine, its nuisances known otherwise.
+
+        Parameters
+        ----------
+        known
+            Its nuisances, of which sigmas may be others.
+        """
+        found = copy(self)
+        found._known = tuple(known)
+        found._moving = [
+            Moving(self._meanings, found._known, record) for record in range(len(self.recordings))
+        ]
+        found._crew = Crew(found, self._workers)
+        return found
+
     @property
     def nuisances(self) -> Sequence[Nuisance]:
         """See `System`."""

@@ -9,7 +9,7 @@ import numpy as np
 from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than, noise_of
 from analysis.engine.beginnings import begun_otherwise
 from analysis.engine.cycles import valley
-from analysis.engine.faint import faint
+from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import faint_search, guessed, one_more
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
@@ -21,7 +21,9 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
-from analysis.engine.system import Array, System
+from analysis.engine.sharper import Sharper, Told, how_sharp, scales_of
+from analysis.engine.system import Array, Candidate, System
+from analysis.engine.until import Until
 from analysis.engine.way import STRAIN
 
 WORTH_FOLLOWING = 8.0
@@ -45,7 +47,8 @@ class Found(NamedTuple):
     """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
 
     Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
-    which share of the time anything can be foretold, and a cause that foretells some of it.
+    which share of the time anything can be foretold, and a cause that foretells some of it. How
+    much better than stated loosely known parameters are known, and from where to begin anew so.
     """
 
     screened: Sequence[Scored]
@@ -55,6 +58,7 @@ class Found(NamedTuple):
     aside: tuple[str, ...] = ()
     foretold: float = 1.0
     foretells: Followed | None = None
+    sharper: "tuple[Told, Start] | None" = None
 
 
 class Led(NamedTuple):
@@ -74,10 +78,16 @@ class Start(NamedTuple):
     hypotheses
         What was found there, the best first, with nuisances of the whole system. None: parameters
         alone came to the noise.
+    near
+        Whether parameters alone ring in phase there.
+    lent
+        What nuisances do to all samples about there, shape (nuisances, n); None: not known.
     """
 
     nuisance: Array
     hypotheses: Sequence[Followed] = ()
+    near: bool = False
+    lent: Array | None = None
 
 
 def by_ring(
@@ -114,29 +124,23 @@ def by_ring(
         led.follow_from(start.hypotheses)
         rung = led.fitted() if led.arrived else None
         return Found((), rung or (), faint=rung is not None)
-    at = refiner.calibrated.at if start is None else start.nuisance
-    nothing = _nothing(system, at)
+    start = Start(refiner.calibrated.at) if start is None else start
+    nothing = _nothing(system, start)
     near = nothing.left < FAINT and nothing.about is None
     if enough is None and _tells_nothing(system, nothing):
         led = FollowedSearch(refiner, nothing, most_causes, following)
         return Found((), (), faint=False, led=Led(led, []))
-    chosen = [one for one in system.candidates if not one.fixed]
-    about = faint(system, nothing, chosen, following)
+    about = faint(system, nothing, _free(system), following)
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
-        if _is_hollow(system, nothing, faintly):
-            starts = [elsewhere_than(nothing)]
-            begun = begun_otherwise(system, at)
-            if begun is not None:
-                starts.append(begun.nuisance)
-            others = [follow_ring(system, one, everything=True) for one in starts]
-            elsewhere = min(others, key=cost_of)
-            if cost_of(elsewhere) < cost_of(nothing) - WORTH_IT:
-                nothing = elsewhere
-                about = faint(system, nothing, chosen, following)
-                screened, faintly = faint_search(about, refiner, refiner.candidates)
-        if not _promising(faintly):
-            return Found(screened, faintly, faint=True)
+        other = _out_of_hollow(system, start.nuisance, nothing, faintly)
+        if other is not None:
+            nothing = other
+            about = faint(system, nothing, _free(system), following)
+            screened, faintly = faint_search(about, refiner, refiner.candidates)
+        sharper = _sharper(refiner, about) if enough is None else None
+        if sharper is not None or not _promising(faintly):
+            return Found(screened, faintly, faint=True, sharper=sharper)
         single = [Guess.of(one) for one in faintly if len(one.hypothesis.parts) == 1]
     else:
         promised = one_more(about, refiner)
@@ -176,23 +180,53 @@ def _foretold(nothing: Followed) -> float:
     return share if LONG <= share < 1.0 and not bent else 1.0
 
 
-def _nothing(system: System, at: Array) -> Followed:
-    """Parameters alone, led as far as they lead, begun otherwise where that is not to the end.
+def _free(system: System) -> list[Candidate]:
+    """Candidates whose magnitude is free."""
+    return [one for one in system.candidates if not one.fixed]
 
-    Parameters
-    ----------
-    system
-        What is simulated.
-    at
-        The likeliest parameters, in sigmas, shape (p,).
-    """
-    nothing = follow_ring(system, at, everything=True)
+
+def _nothing(system: System, start: Start) -> Followed:
+    """Parameters alone, led as far as they lead, begun otherwise where that is not to the end."""
+    if start.near:
+        near = follow_ring(system, start.nuisance, everything=True, near=True, lent=start.lent)
+        return valley(system, near).led
+    nothing = follow_ring(system, start.nuisance, everything=True)
     if nothing.left > FAINT or nothing.about is not None:
-        begun = begun_otherwise(system, at)
+        begun = begun_otherwise(system, start.nuisance)
         if begun is not None:
             other = follow_ring(system, begun.nuisance, everything=True)
             nothing = min(nothing, other, key=lambda one: (-one.reached[0], cost_of(one)))
     return valley(system, nothing).led
+
+
+def _out_of_hollow(
+    system: System, at: Array, nothing: Followed, faintly: Sequence[Fitted]
+) -> Followed | None:
+    """Parameters led from elsewhere, where they had come to a hollow; None: they had not."""
+    if not _is_hollow(system, nothing, faintly):
+        return None
+    begun = begun_otherwise(system, at)
+    starts = [elsewhere_than(nothing), *([] if begun is None else [begun.nuisance])]
+    others = [follow_ring(system, one, everything=True) for one in starts]
+    elsewhere = min(others, key=cost_of)
+    return elsewhere if cost_of(elsewhere) < cost_of(nothing) - WORTH_IT else None
+
+
+def _sharper(refiner: Refiner, about: Faint) -> tuple[Told, Start] | None:
+    """How much better than stated loosely known parameters are known, and from where to go on.
+
+    None: no better, or no cause would be told by it.
+    """
+    system, nothing = refiner.system, about.followed
+    if isinstance(system, (Sharper, Until)):
+        return None
+    told = how_sharp(system, about, refiner.candidates)
+    if told is None or told.rises < WORTH_FOLLOWING:
+        return None
+    scales = scales_of(system, told.share)
+    nuisance = np.where(scales < 1.0, 0.0, nothing.nuisance)
+    lent = None if nothing.columns is None else nothing.columns * scales[:, None]
+    return told, Start(nuisance, near=True, lent=lent)
 
 
 def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:

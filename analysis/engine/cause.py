@@ -9,7 +9,7 @@ import numpy as np
 from analysis.engine.fitted import Fitted
 from analysis.engine.system import Array, Candidate
 
-COVERED = 0.97
+COVERED = 0.95
 """A set of indistinguishable causes holds this much of the probability."""
 
 LEAST_SHARE = 0.02

@@ -18,6 +18,7 @@ from analysis.engine.look import look
 from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
 from analysis.engine.search import REMAINS_ALONE, Search, search
+from analysis.engine.sharper import Sharper
 from analysis.engine.system import Array, System
 from analysis.engine.until import Until
 from cdpr8.errors import UsageError
@@ -37,6 +38,11 @@ FORETOLD = (
     "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
     "resonance, does that, cables that stick and slip or go slack do, and so does something that "
     "only begins then; another frequency of the drive tells which"
+)
+
+SHARPER = (
+    "{loose}: known better than is stated, as the recording tells. They may be off by {most:.2g} "
+    "{unit}, but fit best where they are off by no more than {told:.2g} {unit}"
 )
 
 MOVED = (
@@ -71,7 +77,8 @@ class Diagnosis:
     Attributes
     ----------
     system
-        What was diagnosed; an `Until`, where nothing foretells what came after some time.
+        What was diagnosed; an `Until`, where nothing foretells what came after some time, and a
+        `Sharper`, where the recording told how well parameters are known.
     calibrated
         The system at its likeliest parameters, nothing left out.
     findings
@@ -153,6 +160,8 @@ def diagnose(
     system, problem = searched.system, searched.calibrated.problem
     if isinstance(system, Until):
         notes = (*notes, FORETOLD.format(until_s=system.end_s))
+    if isinstance(system, Sharper):
+        notes = (*notes, SHARPER.format(**system.words()))
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)

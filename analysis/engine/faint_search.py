@@ -48,7 +48,7 @@ def faint_search(
     chosen = {name: one for name, one in candidates.items() if not one.fixed}
     screen = Screen(found.problem, chosen, found.terms)
     null = screen.null()
-    singles = _best(screen, chosen, null.hypothesis)
+    singles = singles_of(screen, chosen)
     pairs: dict[tuple[str, ...], Scored] = {}
     for parent in singles[:PARENTS]:
         if parent.log_score < null.log_score:
@@ -68,6 +68,11 @@ def faint_search(
     ]
     fitted = [_fitted_there(found, refiner, one) for one in (null, *kept, *best)]
     return singles, sorted(fitted, key=lambda one: -one.log_score)
+
+
+def singles_of(screen: Screen, candidates: Mapping[str, Candidate]) -> list[Scored]:
+    """Single causes, each in the places that promise most, the best first."""
+    return _best(screen, candidates, Hypothesis())
 
 
 def others_beside(refiner: Refiner, led: Followed) -> list[Candidate]:

@@ -31,7 +31,9 @@ BESIDE = 2
 """A recording that parameters could not be led on to leads with so many of those before it."""
 
 
-def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
+def by_pilot(
+    refiner: Refiner, most_causes: int, tell: Tell | None, start: Start | None = None
+) -> Found:
     """By every sample of all recordings, from where one of them came to.
 
     Parameters
@@ -42,8 +44,14 @@ def by_pilot(refiner: Refiner, most_causes: int, tell: Tell | None) -> Found:
         Of a hypothesis.
     tell
         Told of progress.
+    start
+        From where all of them are led; None: from where one comes to.
     """
     system, at = refiner.system, refiner.calibrated.at
+    if start is not None:
+        whole = by_ring(refiner, most_causes, tell, start)
+        if whole.fitted:
+            return whole
     chains = _nothing(system, at, tell)
     if chains and not chains[-1].stuck:
         whole = by_ring(refiner, most_causes, tell, Start(chains[-1].nuisance))

@@ -1,7 +1,7 @@
 """The search: parameters, what the ring tells, what lines tell, and what both come to."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from analysis.engine.all_samples import noise_of
 from analysis.engine.by_lines import by_lines
@@ -17,6 +17,7 @@ from analysis.engine.pilot import by_pilot
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
 from analysis.engine.settled import settled
+from analysis.engine.sharper import Sharper, Told
 from analysis.engine.system import Array, System
 from analysis.engine.until import Until
 
@@ -102,9 +103,12 @@ def search(
     if rings(system):
         several = len(records_of(system)) >= SEVERAL
         if several:
-            found = by_pilot(refiner, most_causes, tell)
+            found = by_pilot(refiner, most_causes, tell, start)
         else:
             found = by_ring(refiner, most_causes, tell, start)
+    if found.sharper is not None:
+        told, start = found.sharper
+        return search(Sharper(system, told), tell, anew=anew, most_causes=most_causes, start=start)
     if not found.fitted and found.foretold < 1.0 and not isinstance(system, Until):
         return search(Until(system, found.foretold), tell, anew=anew, most_causes=most_causes)
     if not found.fitted:
@@ -119,6 +123,8 @@ def search(
         refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
         found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))
         null = next(one for one in found.fitted if not one.hypothesis.parts)
+    if isinstance(system, Sharper):
+        found = found._replace(fitted=_as_stated(found.fitted, system.told))
     alone = next((one for one in found.fitted if not one.hypothesis.parts), null)
     moved = _moved(system, alone) if found.faint else {}
     named = {one.hypothesis.names for one in found.fitted}
@@ -128,6 +134,21 @@ def search(
         system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
         faint=found.faint, aside=found.aside, moved=moved,
     )  # fmt: skip
+
+
+def _as_stated(fitted: Sequence[Fitted], told: Told) -> list[Fitted]:
+    """Hypotheses, nothing on no farther behind than where parameters are as free as suits it."""
+    names = (told.cause,)
+    likely = max((one.log_score for one in fitted if one.hypothesis.names == names), default=None)
+    if likely is None:
+        return list(fitted)
+    found = [
+        one
+        if one.hypothesis.parts
+        else replace(one, log_score=max(one.log_score, likely - told.rises))
+        for one in fitted
+    ]
+    return sorted(found, key=lambda one: -one.log_score)
 
 
 def _moved(system: System, alone: Fitted) -> dict[str, float]:

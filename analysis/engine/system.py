@@ -113,6 +113,9 @@ class Nuisance:
         Half the width of the difference that tells what it does, in sigmas.
     record
         The only recording that it moves; "": it may move all.
+    loose
+        Its sigma says how far off it may be at most: all such may be known better, by one share of
+        their sigmas, which the recording tells.
     """
 
     name: str
@@ -122,6 +125,7 @@ class Nuisance:
     term: str | None = None
     step: float = 0.5
     record: str = ""
+    loose: bool = False
 
 
 @dataclass(frozen=True)

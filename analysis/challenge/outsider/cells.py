@@ -72,8 +72,10 @@ def read_cells(time_s: Array, tension_n: Array, fault: CellFault) -> Array:
 
 
 def _lagging(values: Array, lag_s: float, step_s: float) -> Array:
-    """A first-order low-pass that starts settled."""
+    """A first-order low-pass that starts settled, exact for what is straight between samples."""
     from scipy.signal import lfilter
 
     keep = np.exp(-step_s / lag_s)
-    return np.asarray(values[0] + lfilter([1.0 - keep], [1.0, -keep], values - values[0]))
+    before = (1.0 - keep) * lag_s / step_s
+    taken = [1.0 - before, before - keep]
+    return np.asarray(values[0] + lfilter(taken, [1.0, -keep], values - values[0]))

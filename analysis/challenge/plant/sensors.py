@@ -143,13 +143,15 @@ def read_cells(time_s: Array, tension_n: Array, fault: CellFault) -> Array:
 
 
 def _slow(values: Array, lag_s: float, step_s: float) -> Array:
-    """Two low-passes in a row."""
+    """Two low-passes in a row, each of what runs straight from sample to sample."""
     from scipy.signal import lfilter
 
     for share in (LAG_RATIO / (1.0 + LAG_RATIO), 1.0 / (1.0 + LAG_RATIO)):
-        keep = np.exp(-step_s / (share * lag_s))
-        start = [keep * values[0]]
-        values = lfilter([1.0 - keep], [1.0, -keep], values, zi=start)[0]
+        steps = step_s / (share * lag_s)
+        keep = np.exp(-steps)
+        mean = (1.0 - keep) / steps
+        settled = [mean * values[0]]
+        values = lfilter([1.0 - mean, mean - keep], [1.0, -keep], values, zi=settled)[0]
     return values
 
 

@@ -1,0 +1,142 @@
+"""Parameters that may be known better than is stated: the recording tells by how much.
+
+Of some parameters it is only known how far off they may be at most, such as the instants at which
+eight amplifiers are read by clocks of their own. Where they are as free as that, they make up for
+whatever looks like them: a cell that is a little late, a cable that damps a little. But if seven
+of eight need not move at all, the eighth was hardly meant to. One share of what is stated is told
+for all of them alike, by evidence: for parameters alone, and for each single cause beside them.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from analysis.engine.evidence import Problem, directions
+from analysis.engine.faint import Faint
+from analysis.engine.faint_search import singles_of
+from analysis.engine.screen import Screen
+from analysis.engine.system import (
+    Array,
+    Bundle,
+    Candidate,
+    Nuisance,
+    Point,
+    Prediction,
+    Ringing,
+    System,
+)
+
+SHARES = (0.3, 0.1, 0.03)
+"""Of what is stated, that may be all that there is."""
+
+
+class Told(NamedTuple):
+    """What a recording tells of how well parameters are known.
+
+    Attributes
+    ----------
+    share
+        Of their stated sigmas, at which a single cause, or none, is likeliest.
+    cause
+        The likeliest single cause.
+    rises
+        By how much that is likelier than parameters alone, as a logarithm, each at the share that
+        suits it.
+    """
+
+    share: float
+    cause: str
+    rises: float
+
+
+class Sharper:
+    """A system whose loosely known parameters are known better.
+
+    Parameters
+    ----------
+    system
+        As it is stated.
+    told
+        How well they are known.
+    """
+
+    def __init__(self, system: System, told: Told) -> None:
+        self._system = system
+        self.told = told
+        self.name = system.name
+        self.bundles: Sequence[Bundle] = system.bundles
+        self.candidates: Sequence[Candidate] = system.candidates
+        self.scales = scales_of(system, told.share)
+        """How much of its sigma is left of each parameter, shape (p,)."""
+        self.nuisances: tuple[Nuisance, ...] = tuple(
+            replace(one, sigma=scale * one.sigma)
+            for one, scale in zip(system.nuisances, self.scales, strict=True)
+        )
+
+    def words(self) -> dict[str, str | float]:
+        """Which parameters, what was stated of the first, and what is told of it."""
+        loose = [one for one in self._system.nuisances if one.loose]
+        more = f" and {len(loose) - 1} more" if len(loose) > 1 else ""
+        stated = loose[0].sigma
+        return {"loose": f"{loose[0].name}{more}", "unit": loose[0].unit, "most": stated,
+                "told": self.told.share * stated}  # fmt: skip
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        return self._system.simulate([self._as_stated(one) for one in points], reduce)
+
+    def tones_hz(self, point: Point) -> Array:
+        """See `Ringing`."""
+        if not isinstance(self._system, Ringing):
+            return np.zeros(0)
+        return self._system.tones_hz(self._as_stated(point))
+
+    def _as_stated(self, point: Point) -> Point:
+        return replace(point, nuisance=self.scales * point.nuisance)
+
+
+def scales_of(system: System, share: float) -> Array:
+    """The share for each parameter that is known loosely, 1 for the others, shape (p,)."""
+    return np.array([share if one.loose else 1.0 for one in system.nuisances])
+
+
+def how_sharp(system: System, found: Faint, candidates: Mapping[str, Candidate]) -> Told | None:
+    """How well loosely known parameters are known; None: as stated, or there are none.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    found
+        What could be there beside parameters that come to the noise alone.
+    candidates
+        By name: what may be a cause.
+    """
+    chosen = {name: one for name, one in candidates.items() if not one.fixed}
+    if not chosen or not any(one.loose for one in system.nuisances):
+        return None
+    alone, best = [], []
+    for share in (1.0, *SHARES):
+        screen = Screen(_sharpened(found, scales_of(system, share)), chosen, found.terms)
+        singles = singles_of(screen, chosen)
+        if not singles:
+            return None
+        alone.append(screen.null().log_score)
+        best.append(singles[0])
+    scores = np.array([one.log_score for one in best])
+    i = int(np.argmax(np.maximum(alone, scores)))
+    if i == 0:
+        return None
+    (cause,) = best[i].hypothesis.names
+    return Told((1.0, *SHARES)[i], cause, float(scores.max() - max(alone)))
+
+
+def _sharpened(found: Faint, scales: Array) -> Problem:
+    """The same problem, where parameters are known better."""
+    problem = found.problem
+    columns = (problem.nuisance @ found.rotation.T) * scales
+    rotation = directions(columns, problem.base, problem.used)
+    at = rotation.T @ (found.followed.nuisance / scales)
+    return replace(problem, nuisance=columns @ rotation, at=at)
