@@ -64,6 +64,10 @@ for an error of form: what is known exactly must explain to the noise."""
 SUREST = 0.4
 """As much more leaves it even where a law has no error of form."""
 
+SLIGHT = 0.1
+"""What is left of all that parameters alone leave, as an amplitude, and is less than this share of
+a law's error of form, that form leaves: the less, the less doubt."""
+
 MOST_DOUBT = 0.6
 """What was led to the ring's phase and is far from the noise is more often wrong than right."""
 
@@ -196,9 +200,9 @@ def judge(
             break
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
-    doubt = doubt_of(chosen, candidates, lost=lost, noise=noise)
+    null = next(one for one in fitted if not one.hypothesis.parts)
+    doubt = doubt_of(chosen, candidates, lost=lost, noise=noise, alone=null.left)
     if settled:
-        null = next(one for one in fitted if not one.hypothesis.parts)
         doubt = doubt_beside(chosen, null, candidates, noise)
     doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
@@ -215,16 +219,38 @@ def judge(
 
 
 def doubt_of(
-    fitted: Fitted, candidates: Mapping[str, Candidate], *, lost: bool, noise: float = NOISE
+    fitted: Fitted,
+    candidates: Mapping[str, Candidate],
+    *,
+    lost: bool,
+    noise: float = NOISE,
+    alone: float = np.nan,
 ) -> float:
-    """The probability that what explains best is not what is there, by what it leaves."""
+    """The probability that what explains best is not what is there, by what it leaves.
+
+    Parameters
+    ----------
+    fitted
+        What explains best.
+    candidates
+        By name.
+    lost
+        Whether it could not be led to the ring's phase.
+    noise
+        The squared misfit of a sample that noise leaves.
+    alone
+        That which parameters alone leave; NaN: not known.
+    """
     if lost:
         doubt = min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
         return 1.0 - (1.0 - doubt) / (1.0 + max(fitted.lines_left - 1.0, 0.0) / EVEN_OF_LINES)
     if np.isnan(fitted.left):
         return 0.0
     form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)
-    beyond = max(fitted.left - noise, 0.0) / max(DOUBTFUL * form, SUREST)
+    more = max(fitted.left - noise, 0.0)
+    beyond = more / max(DOUBTFUL * form, SUREST)
+    if more < (SLIGHT * form) ** 2 * (alone - noise):
+        beyond *= float(np.sqrt(more / (alone - noise))) / (SLIGHT * form)
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
 
 

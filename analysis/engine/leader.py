@@ -20,7 +20,7 @@ from analysis.engine.guess import Guess
 from analysis.engine.part import records_of
 from analysis.engine.places import is_placed
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import GOES_ON, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
@@ -41,6 +41,10 @@ POOR = 0.2
 ARRIVED = 2.5
 """What was led to the end speaks for every sample, where no more than this is left of the squared
 misfit of one, on average: laws are not exact."""
+
+SLIGHTLY = 0.01
+"""And where more is left, but no more than `GOES_ON`, nor, as an amplitude, than this of what
+parameters alone leave: laws that explain most are not exact to the noise."""
 
 
 class Leader:
@@ -93,7 +97,7 @@ class Leader:
     @property
     def arrived(self) -> bool:
         """Whether something was led to the end, near the noise."""
-        return bool(self._led) and self._best.misfit < ARRIVED * len(self._samples.shares)
+        return bool(self._led) and self._arrives(self._best.misfit)
 
     @property
     def is_poor(self) -> bool:
@@ -106,9 +110,15 @@ class Leader:
         self._led = shown_the_way(self._system, led_through(self._system, self._led), self._led)
         first = sorted(self._led, key=farthest_first)
         nothing = nothing_again(self._system, self._nothing, first[:RESTARTS])
-        if min(one.misfit for one in (*self._led, nothing)) > ARRIVED * count:
+        if not self._arrives(min(one.misfit for one in (*self._led, nothing))):
             return None
         return all_samples_say(self._refiner, self._led, nothing, count)
+
+    def _arrives(self, misfit: float) -> bool:
+        """Whether so much, squared, of all samples is near enough to the noise."""
+        count = len(self._samples.shares)
+        law = min(SLIGHTLY**2 * self._nothing.misfit, GOES_ON * count)
+        return misfit < max(ARRIVED * count, law)
 
     @property
     def _best(self) -> Followed:

@@ -15,7 +15,7 @@ from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import Array, System
-from analysis.engine.way import AT_ONCE, LOST, WINDOWS, Way
+from analysis.engine.way import LOST, WINDOWS, Way
 
 EFFORT, PATIENCE = 1000.0, 300.0
 """Whole simulations after which nothing is led on: some ten times all differences. At the beginning
@@ -93,7 +93,7 @@ def follow_ring(
         impatient = samples.effort > PATIENCE + (most - PATIENCE) * share
         stuck = way.left(share) > way.allowed(share)
         # What is in phase over all of the time is nearly there.
-        if impatient and stuck and way.left(1.0) > AT_ONCE:
+        if impatient and stuck and way.left(1.0) > way.in_phase(share):
             break
         passed, share = share, 1.0 if near else way.window(share)
         best = (ahead or {}).get(share, np.inf)

@@ -9,7 +9,7 @@ from analysis.engine.all_samples import noise_of
 from analysis.engine.followed import Followed
 from analysis.engine.graduated import alike, graduated
 from analysis.engine.guess import Guess
-from analysis.engine.leader import EFFORT, POOR
+from analysis.engine.leader import ARRIVED, EFFORT, POOR
 from analysis.engine.more_leader import MoreLeader
 from analysis.engine.survey import sticks, surveyed
 from analysis.engine.way import AT_ONCE
@@ -114,5 +114,5 @@ class ToldLeader(MoreLeader):
     def _lead_on(self, start: Followed) -> None:
         """Lead on what was led over the first stretch."""
         assert start.state is not None
-        passed = start.share if start.left < AT_ONCE else 0.0
+        passed = start.share if start.left < ARRIVED else 0.0
         self._lead(start.nuisance, start.state, near=False, passed=passed)

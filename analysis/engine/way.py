@@ -26,6 +26,10 @@ AT_ONCE = 1.5
 """A longer stretch is gone over at once only where no more than this is left of a sample: a faint
 ring half a turn out of phase leaves little more than noise, and so does a wrong turn after it."""
 
+GROWS = 2.0
+"""What a law that is not exact leaves, it leaves of a longer stretch as well: no more than so many
+times as much, where it rings in phase there."""
+
 LOST = 300.0
 """Where a sample is off by more than this, squared and on average, there is no phase to follow."""
 
@@ -113,12 +117,12 @@ class Way:
             Share up to which parameters were led.
         """
         self._settled = False
-        share = next(one for one in WINDOWS if one > passed)
+        at_once, share = self.in_phase(passed), next(one for one in WINDOWS if one > passed)
         if self.left(share) < REACH:
             whole = self.here
             if self._seen < 1.0:
                 (whole,) = self._samples.residuals([self.at.point])
-            farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < AT_ONCE)
+            farthest = (one for one in reversed(WINDOWS) if self._mean(whole, one) < at_once)
             share = max(share, next(farthest, share))
             whole[self._samples.shares > share] = 0.0
             self.here = whole
@@ -162,6 +166,19 @@ class Way:
         """What noise may leave of a sample up to a share of the time."""
         count = int((self._samples.shares <= share).sum())
         return 1.0 + LEAVES * float(np.sqrt(2.0 / max(count, 1)))
+
+    def in_phase(self, passed: float) -> float:
+        """What may be left of a sample of a longer stretch where the ring is in phase there.
+
+        Parameters
+        ----------
+        passed
+            Share of the time up to which numbers were led.
+        """
+        exact = self.at.state is None or passed == 0.0
+        if exact or self.left(passed) <= self.allowed(passed):
+            return AT_ONCE
+        return max(AT_ONCE, GROWS * self.left(passed))
 
     def step(self, share: float, lost: float = LOST, best: float = np.inf) -> bool:
         """One Gauss-Newton step over the samples up to a share of the time, if there is one.

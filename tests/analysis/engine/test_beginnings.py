@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.engine.beginnings import TOLD, begun_otherwise
-from analysis.engine.by_ring import _nothing
+from analysis.engine.by_ring import Start, _nothing
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.system import Array, Nuisance, Point
 from tests.analysis.engine.test_ring_fit import T_S, TONE_HZ, LetGo, ring
@@ -38,7 +38,7 @@ def test_parameters_that_took_a_wrong_turn_at_the_beginning_are_led_to_the_right
     begun = begun_otherwise(system, start)
     assert begun is not None
     assert begun.nuisance[0] == pytest.approx(true, abs=0.03)
-    assert _nothing(system, start).left == pytest.approx(1.0, abs=0.1)
+    assert _nothing(system, Start(start)).left == pytest.approx(1.0, abs=0.1)
 
 
 def test_what_parameters_do_not_foretell_at_all_is_not_begun_otherwise() -> None:

@@ -242,3 +242,15 @@ def test_what_leaves_ten_times_as_much_is_not_likelier_for_having_a_cause_less(
     said = judge(hypotheses, known, settled=True)
     assert said.probability[1] > 0.9
     assert judge(hypotheses, known).probability[1] < said.probability[1]
+
+
+@pytest.mark.parametrize(
+    ("alone", "doubted"), [(50.0, True), (2e6, False)], ids=["of little", "of a great deal"]
+)
+def test_what_a_law_leaves_of_a_great_deal_is_its_error_of_form(
+    refiner: Refiner, alone: float, doubted: bool
+) -> None:
+    led = [*of(refiner, 2.9)[:2], fitted(refiner, None, -1e6, alone)]
+    assert (judge(led, CANDIDATES).doubt > 0.5) == doubted
+    exact = {name: replace(one, form_share=0.0) for name, one in CANDIDATES.items()}
+    assert judge(led, exact).doubt > 0.5

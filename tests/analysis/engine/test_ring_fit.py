@@ -1,6 +1,7 @@
 """The ring on an oscillator that is let go: its phase, what leads there, and what cannot."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,13 @@ import pytest
 from analysis.engine import ring_fit
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import one_more
+from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.ring_samples import Samples
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import Number, State
 from analysis.engine.system import (
@@ -27,6 +30,7 @@ from analysis.engine.system import (
     Shape,
     Term,
 )
+from analysis.engine.way import Way
 
 TONE_HZ, SIGMA = 5.0, 0.01
 """The tone, and how well it is known: over 20 s its phase is not known at all."""
@@ -115,7 +119,8 @@ def test_a_faint_ring_two_turns_out_of_phase_is_followed_too(noise: float) -> No
 def test_out_of_patience_what_is_stuck_above_the_noise_is_not_led_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    stuck = LetGo(ring(2.0 * SIGMA, 0.0, 0.3, 1.1), noise=0.2)
+    late = 0.6 * np.sin(2.0 * np.pi * 1.1 * TONE_HZ * T_S)[:, None] * (T_S[:, None] > 8.0)
+    stuck = LetGo(ring(2.0 * SIGMA, 0.0, 0.15, 1.1) + late, noise=0.2)
     damping = state_of(DAMPING, 0.02)
     patient = follow_ring(stuck, np.zeros(1), damping)
     assert patient.to_end
@@ -125,6 +130,25 @@ def test_out_of_patience_what_is_stuck_above_the_noise_is_not_led_on(
     assert given_up.effort < 0.5 * patient.effort
     at_the_noise = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise=0.2)
     assert follow_ring(at_the_noise, np.zeros(1), damping).to_end
+
+
+@pytest.mark.parametrize(("off", "share"), [(0.0, 1.0), (0.4, 0.45)], ids=["in phase", "not"])
+def test_what_a_law_leaves_throughout_is_gone_over_at_once_where_it_rings_in_phase(
+    off: float, share: float
+) -> None:
+    # Twice the noise that is stated, as a law leaves that is not exact; a late tone out of phase.
+    system = LetGo(ring(0.0, 0.0, 0.0, 0.0), noise=0.02)
+    (bundle,) = system.bundles
+    late = off * np.sin(2.0 * np.pi * TONE_HZ * T_S)[:, None] * (T_S[:, None] > 9.0)
+    system.bundles = (
+        replace(bundle, value=bundle.value + late, covariance=0.5 * bundle.covariance),
+    )
+    samples = Samples(system, everything=True)
+    law = Way(samples, Followed(np.zeros(1), state_of(DAMPING, 0.0)))
+    assert law.left(0.27) == pytest.approx(2.0, rel=0.2)
+    assert law.window(0.27) == share
+    # Parameters leave noise alone.
+    assert Way(samples, Followed(np.zeros(1), None)).window(0.27) == 0.45
 
 
 def test_no_more_is_simulated_than_is_looked_at() -> None:
