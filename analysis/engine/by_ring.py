@@ -82,12 +82,15 @@ class Start(NamedTuple):
         Whether parameters alone ring in phase there.
     lent
         What nuisances do to all samples about there, shape (nuisances, n); None: not known.
+    seen
+        What candidates do about a place that may be near; None: not known.
     """
 
     nuisance: Array
     hypotheses: Sequence[Followed] = ()
     near: bool = False
     lent: Array | None = None
+    seen: Faint | None = None
 
 
 def by_ring(
@@ -130,7 +133,7 @@ def by_ring(
     if enough is None and _tells_nothing(system, nothing):
         led = FollowedSearch(refiner, nothing, most_causes, following)
         return Found((), (), faint=False, led=Led(led, []))
-    about = faint(system, nothing, _free(system), following)
+    about = faint(system, nothing, _free(system), following, near=start.seen)
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
         other = _out_of_hollow(system, start.nuisance, nothing, faintly)
@@ -226,7 +229,7 @@ def _sharper(refiner: Refiner, about: Faint) -> tuple[Told, Start] | None:
     scales = scales_of(system, told.share)
     nuisance = np.where(scales < 1.0, 0.0, nothing.nuisance)
     lent = None if nothing.columns is None else nothing.columns * scales[:, None]
-    return told, Start(nuisance, near=True, lent=lent)
+    return told, Start(nuisance, near=True, lent=lent, seen=about)
 
 
 def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:
