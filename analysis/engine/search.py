@@ -138,10 +138,12 @@ def search(
 
 def _as_stated(fitted: Sequence[Fitted], told: Told) -> list[Fitted]:
     """Hypotheses, nothing on no farther behind than where parameters are as free as suits it."""
-    names = (told.cause,)
-    likely = max((one.log_score for one in fitted if one.hypothesis.names == names), default=None)
-    if likely is None:
+    on = [one for one in fitted if one.hypothesis.parts]
+    if not on:
         return list(fitted)
+    # Where the cause itself was not led, what was found in its stead.
+    same = [one for one in on if one.hypothesis.names == (told.cause,)]
+    likely = max(one.log_score for one in same or on)
     found = [
         one
         if one.hypothesis.parts

@@ -33,23 +33,24 @@ class Watched:
     name = "watched"
     candidates: Sequence[Candidate] = (LATE,)
 
-    def __init__(self, late_s: Array, *, loose: bool) -> None:
+    def __init__(self, late_s: Array, *, loose: bool, records: Sequence[str] = ("",)) -> None:
         self.nuisances: Sequence[Nuisance] = (
             Nuisance("tone", 1e-3, "1"),
             *(Nuisance(f"instant@{i}", LATE_S, "s", loose=loose) for i in range(1, CELLS + 1)),
         )
         value = seen(0.0, late_s)
-        value = value + NOISE * np.random.default_rng(1).standard_normal(value.shape)
+        noise = np.random.default_rng(1)
         names = tuple(f"y{i}" for i in range(1, CELLS + 1))
         segments = (Segment(0.0, 1.0, None, 20.0, name="rest"), Segment(1.0, 20.0, None, 20.0))
-        self.bundles = (
-            Bundle(names, ("V",) * CELLS, T_S, value, NOISE**2 * np.eye(CELLS), segments,
-                   tones_hz=(TONE_HZ,)),
+        self.bundles = tuple(
+            Bundle(names, ("V",) * CELLS, T_S, value + NOISE * noise.standard_normal(value.shape),
+                   NOISE**2 * np.eye(CELLS), segments, record=record, tones_hz=(TONE_HZ,))
+            for record in records
         )  # fmt: skip
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""
-        return [reduce([self._one(point)]) for point in points]
+        return [reduce([self._one(point)] * len(self.bundles)) for point in points]
 
     def _one(self, point: Point) -> Array:
         late_s = LATE_S * point.nuisance[1:]
@@ -71,8 +72,11 @@ def one_late(sigmas: float) -> Array:
     return late_s
 
 
-def test_one_of_eight_that_is_off_is_named_where_the_others_need_not_be() -> None:
-    found = diagnose(Watched(one_late(2.0), loose=True))
+@pytest.mark.parametrize("records", [("",), ("first", "second", "third")])
+def test_one_of_eight_that_is_off_is_named_where_the_others_need_not_be(
+    records: Sequence[str],
+) -> None:
+    found = diagnose(Watched(one_late(2.0), loose=True, records=records))
     assert found.judgement is not None
     (cause,) = found.judgement.causes
     assert (cause.name, set(cause.values)) == ("late", {"late_s@3"})
