@@ -183,8 +183,8 @@ def judge(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )
     chosen = fitted[int(np.argmax(weights))]
+    null = next(one for one in fitted if not one.hypothesis.parts)
     if absent > 0.5 or not chosen.hypothesis.parts:
-        null = next(one for one in fitted if not one.hypothesis.parts)
         # Parameters alone follow a ring from which nothing was left out.
         verdict = "unexplained" if lost else "none"
         return Judgement(verdict, (), null, tuple(float(w) for w in weights))
@@ -200,7 +200,6 @@ def judge(
             break
         # What is not sure enough is left out, and the others are as they are without it.
         chosen = max(fewer, key=lambda one: one.log_score)
-    null = next(one for one in fitted if not one.hypothesis.parts)
     doubt = doubt_of(chosen, candidates, lost=lost, noise=noise, alone=null.left)
     if settled:
         doubt = doubt_beside(chosen, null, candidates, noise)

@@ -13,8 +13,8 @@ from analysis.engine.system import (
     Nuisance,
     Point,
     Prediction,
-    Ringing,
     System,
+    tones_of,
 )
 
 SEVERAL = 3
@@ -78,9 +78,7 @@ class Part:
 
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
-        if not isinstance(self._system, Ringing):
-            return np.zeros(0)
-        return self._system.tones_hz(self._of_whole(point))
+        return tones_of(self._system, self._of_whole(point))
 
     def _of_whole(self, point: Point) -> Point:
         """The same for the whole system, of this part's recordings."""

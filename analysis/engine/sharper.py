@@ -24,8 +24,8 @@ from analysis.engine.system import (
     Nuisance,
     Point,
     Prediction,
-    Ringing,
     System,
+    tones_of,
 )
 
 SHARES = (0.3, 0.1, 0.03)
@@ -89,9 +89,7 @@ class Sharper:
 
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
-        if not isinstance(self._system, Ringing):
-            return np.zeros(0)
-        return self._system.tones_hz(self._as_stated(point))
+        return tones_of(self._system, self._as_stated(point))
 
     def _as_stated(self, point: Point) -> Point:
         return replace(point, nuisance=self.scales * point.nuisance)

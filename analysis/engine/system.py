@@ -352,3 +352,8 @@ class Ringing(Protocol):
     def tones_hz(self, point: Point) -> Array:
         """Its own tones in the first of its recordings, shape (k,), Hz; (0,): not known."""
         ...
+
+
+def tones_of(system: System, point: Point) -> Array:
+    """Tones of a system, whether or not it says them, as `Ringing.tones_hz` has them."""
+    return system.tones_hz(point) if isinstance(system, Ringing) else np.zeros(0)

@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from analysis.engine.system import (
     Array,
     Bundle,
@@ -13,9 +11,9 @@ from analysis.engine.system import (
     Nuisance,
     Point,
     Prediction,
-    Ringing,
     Segment,
     System,
+    tones_of,
 )
 
 
@@ -50,7 +48,7 @@ class Until:
 
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
-        return self._system.tones_hz(point) if isinstance(self._system, Ringing) else np.zeros(0)
+        return tones_of(self._system, point)
 
 
 def _cut(bundle: Bundle, share: float) -> Bundle:

@@ -1,7 +1,6 @@
 """What is known loosely is known as well as the recording tells: one that is off stands out."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -118,7 +117,7 @@ def test_what_is_known_better_is_simulated_as_it_was() -> None:
     system = Watched(one_late(0.0), loose=True)
     sharper = Sharper(system, Told(0.1, "late", 9.0))
     nuisance = np.arange(9.0)
-    stated = replace(Point(nuisance), nuisance=sharper.scales * nuisance)
+    stated = Point(sharper.scales * nuisance)
     assert sharper.nuisances[3].sigma == pytest.approx(0.1 * LATE_S)
     assert sharper.nuisances[0] == system.nuisances[0]
     for one, other in zip(
