@@ -17,7 +17,9 @@ from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Part
+from analysis.engine.instead import begun_instead
 from analysis.engine.kin import lead_from
+from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen, groups
 from analysis.engine.state import State
 from analysis.engine.system import Array, Candidate, System
@@ -121,8 +123,18 @@ def rivals(
         led = lead_from(system, law, state, nuisances_of(found, one))
         if not (led.to_end and led.left < noise_of(system)):
             # Straight lines go far along what tells little, and may miss the valley.
-            led = min(led, lead_from(system, law, state, law.nuisance), key=cost_of)
+            closer = _as_strong(system, law, state) or state
+            led = min(led, lead_from(system, law, closer, law.nuisance), key=cost_of)
         yield led
+
+
+def _as_strong(system: System, law: Followed, state: State) -> State | None:
+    """A rival in the places of the cause that it stands for, as strong; None: it has others."""
+    on = state.hypothesis.names
+    (known,), (other,) = ({*law.names} - {*on}, {*on} - {*law.names})
+    instead = begun_instead(Samples(system, everything=True), law, known, other)
+    same = instead is not None and instead.hypothesis.key == state.hypothesis.key
+    return instead if same else None
 
 
 def plainest(

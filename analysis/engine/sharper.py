@@ -28,7 +28,7 @@ from analysis.engine.system import (
     tones_of,
 )
 
-SHARES = (0.3, 0.1, 0.03)
+SHARES = (0.3, 0.1, 0.03, 0.01)
 """Of what is stated, that may be all that there is."""
 
 

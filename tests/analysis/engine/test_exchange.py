@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine import rival_leader
+from analysis.engine import exchange, rival_leader
 from analysis.engine.all_samples import cost_of
 from analysis.engine.exchange import exchanged, fresh, plainest, rivals
 from analysis.engine.faint import Faint, faint
@@ -49,11 +49,13 @@ def cause(name: str, *shapes: Shape, fixed: bool = False) -> Candidate:
 
 
 BENT, TRUE, OTHER = cause("bent"), cause("true"), cause("other")
+DOUBLE = cause("double")
 NEAR, RAISED = cause("near"), cause("raised")
 DOES = {
     "bent": THERE + LEVEL,
     "true": THERE,
     "other": ELSE,
+    "double": 2.0 * THERE,
     "near": THERE + 0.03 * ELSE,
     "raised": LEVEL,
 }
@@ -115,6 +117,28 @@ def test_it_is_led_from_there_and_costs_as_much_less_as_the_parameter_did() -> N
     assert led.names == ("true",)
     assert cost_of(led) < cost_of(system.bent) - 350.0
     assert fresh(promised, [system.bent, led]) == [], "it was led"
+
+
+def test_one_that_straight_lines_lose_is_led_once_more_as_strong_as_the_cause_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A parameter takes a part of what a rival does: about the cause itself that part is missed."""
+    system = _Straight(BENT, DOUBLE)
+    known = {one.name: one for one in system.candidates}
+    begun: list[tuple[float, float]] = []
+
+    def lost(_: object, law: Followed, state: State, nuisance: Array) -> Followed:
+        begun.append((state.term_values()["double", "size"], float(nuisance[0])))
+        return replace(law, state=state, left=100.0, misfit=1e6)
+
+    monkeypatch.setattr(exchange, "lead_from", lost)
+    found = faint(system, system.bent, [DOUBLE])
+    list(rivals(system, found, known, fresh(exchanged(found, known), [system.bent])))
+    (promised, moved), (as_strong, stays) = begun
+    assert promised == pytest.approx(0.5, abs=0.03)
+    assert moved == pytest.approx(0.0, abs=2.0)
+    assert as_strong == pytest.approx(0.75, rel=0.1), "the level that the parameter stands for too"
+    assert stays == system.bent.nuisance[0]
 
 
 def test_what_is_there_or_not_is_asked_as_a_whole_in_each_of_its_ways() -> None:
