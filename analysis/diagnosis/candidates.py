@@ -116,7 +116,8 @@ POLICIES: dict[str, Policy] = {
         shapes={"before_share": (0.0, 0.12), "depth_share": (0.0, 1.0), "reads_up": (0.0, 1.0)},
         form_share=LINEAR,
     ),
-    "cell_lag": Policy(steps={"lag_s": 0.003}, form_share=LINEAR),
+    # A filter's second pole is told once it is there.
+    "cell_lag": Policy(steps={"lag_s": 0.003}, shapes={"second_share": (0.0,)}, form_share=LINEAR),
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     # What disturbs the platform as its motion begins need not wait for a drive that is late.
     "drive_phase": Policy(steps={"late_s": 0.003}, shapes={"disturbed_late_share": (1.0, 0.0)}),
