@@ -20,6 +20,9 @@ class Where(Open):
 
     side: Side
     cables: list[int] = Field(description="1 to 8; empty where there is no choice")
+    or_cables: list[list[int]] = Field(
+        default=[], description="sets of cables where it might as well be, within 20 to 1"
+    )
     when: str
     harmonics: list[int]
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot
 from typing import Any
 
@@ -117,6 +118,16 @@ def cables_of(cause: Cause) -> list[int]:
     return sorted({own[term] for term in [*sure, *beside] or large})
 
 
+def other_cables(cause: Cause) -> list[list[int]]:
+    """Sets of cables where it might as well be: the data hardly tell them from `cables_of`."""
+    known = [cables_of(cause)]
+    for values in cause.elsewhere:
+        other = cables_of(replace(cause, values=values, sigmas={}))
+        if other not in known:
+            known.append(other)
+    return known[1:]
+
+
 def _stands_out(cause: Cause, term: str, sigmas: float) -> bool:
     return abs(cause.values[term]) > sigmas * cause.sigmas.get(term, 0.0)
 
@@ -132,6 +143,7 @@ def _cause(cause: Cause, sides: dict[str, str], machine: RecordedMachine) -> dic
         "where": {
             "side": sides[cause.name],
             "cables": cables,
+            "or_cables": other_cables(cause),
             "when": WHEN.get(cause.name, "throughout the motion"),
             "harmonics": [],
         },

@@ -12,7 +12,7 @@ from analysis.diagnosis.candidates import FRICTIONS
 from analysis.diagnosis.guesses import in_words as guesses_in_words
 from analysis.diagnosis.phrases import phrase
 from analysis.diagnosis.sides import in_words as which_side
-from analysis.diagnosis.spelling import listed, odds, percent, sentence
+from analysis.diagnosis.spelling import cables, listed, odds, percent, sentence
 from analysis.diagnosis.titles import parameter_name, short
 
 RULED_OUT = 3.0
@@ -159,6 +159,9 @@ def _cause(cause: Statement) -> str:
         )
     else:
         text += f" The probability that it is this is {percent(cause['probability'])}."
+    if where.get("or_cables"):
+        places = listed([cables(one) for one in where["or_cables"]], "or")
+        text += f" It could as well be in {places}: these data hardly tell."
     if where.get("when") and where["when"] != "throughout the motion":
         text += f" It shows {_when(where['when'])}."
     if cause.get("implausible"):

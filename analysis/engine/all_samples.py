@@ -27,6 +27,9 @@ CONTENDS, NO_BETTER = 100.0, 10.0
 """What is no farther behind the best, in squared misfit, is led through with differences of its
 own, unless what is on there without one of its causes is as good to within this."""
 
+AS_LIKELY = 3.0
+"""The same causes in other places are told of where they are no farther behind: one in twenty."""
+
 WORTH_IT = 30.0
 """Less than this, in squared misfit, is no reason to ask anything again."""
 
@@ -185,7 +188,7 @@ def all_samples_say(
     """
     best = min(led, key=cost_of, default=nothing)
     forms = forms_of(refiner, best, nothing, count)
-    likeliest: dict[tuple[str, ...], tuple[float, State, Followed]] = {}
+    scored: dict[tuple[str, ...], list[tuple[float, State, Followed]]] = {}
     for one in (*led, nothing):
         state = one.state or State(Hypothesis(), refiner.candidates, (), np.zeros(0))
         logs = []
@@ -195,13 +198,32 @@ def all_samples_say(
         strain = 0.5 * float(one.nuisance @ one.nuisance)
         prior = state.hypothesis.log_prior(refiner.candidates)
         score = float(np.logaddexp.reduce(logs)) - strain + prior
-        if one.names not in likeliest or score > likeliest[one.names][0]:
-            likeliest[one.names] = score, state, one
+        scored.setdefault(one.names, []).append((score, state, one))
     fitted = []
-    for score, state, one in likeliest.values():
+    for same in scored.values():
+        score, state, one = max(same, key=lambda each: each[0])
         there = refiner.at(state, refiner.directions_of(one.nuisance))
-        fitted.append(replace(there, log_score=score, point=one.point, left=one.misfit / count))
+        others = [each for each in same if score - AS_LIKELY < each[0] and each[1] is not state]
+        others.sort(key=lambda each: -each[0])
+        fitted.append(replace(
+            there, log_score=score, point=one.point, left=one.misfit / count,
+            elsewhere=_places([each for _, each, _ in others], state),
+        ))  # fmt: skip
     return sorted(fitted, key=lambda one: -one.log_score)
+
+
+def _places(others: Sequence[State], state: State) -> tuple[dict[str, dict[str, float]], ...]:
+    """The causes of states that have other places on than one has, each set of places once."""
+    seen = {state.hypothesis.key}
+    found = []
+    for one in others:
+        if one.hypothesis.key not in seen:
+            seen.add(one.hypothesis.key)
+            causes: dict[str, dict[str, float]] = {name: {} for name in one.hypothesis.names}
+            for (name, term), value in one.term_values().items():
+                causes[name][term] = value
+            found.append(causes)
+    return tuple(found)
 
 
 def forms_of(

@@ -48,6 +48,8 @@ class Cause:
         its other numbers.
     at_limit
         Numbers at the edge of their plausible range: a better fit with an implausible number.
+    elsewhere
+        Term -> magnitude in other places that are about as likely, the likeliest first.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Cause:
     shapes: Mapping[str, float]
     shape_sigmas: Mapping[str, float]
     at_limit: tuple[str, ...]
+    elsewhere: tuple[Mapping[str, float], ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -130,6 +133,7 @@ def cause_of(
         shapes=dict(part.shapes),
         shape_sigmas={k[1]: v for k, v in source.shape_sigmas.items() if k[0] == head},
         at_limit=tuple(what for who, what in source.at_limit if who == head),
+        elsewhere=tuple(one[head] for one in source.elsewhere if set(one[head]) != set(part.terms)),
     )
 
 

@@ -43,6 +43,9 @@ class Fitted:
     left
         Squared misfit of a sample, ring and all, on average; not a number where it was not led to
         the ring's phase.
+    elsewhere
+        The same causes in other places, that are about as likely: candidate -> term -> magnitude of
+        each, the likeliest first.
     """
 
     hypothesis: Hypothesis
@@ -59,6 +62,7 @@ class Fitted:
     at_limit: tuple[tuple[str, str], ...]
     state: State
     left: float = nan
+    elsewhere: tuple[Mapping[str, Mapping[str, float]], ...] = ()
 
     @property
     def remaining(self) -> Array:

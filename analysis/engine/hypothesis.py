@@ -82,16 +82,24 @@ class Hypothesis:
 def part_log_prior(candidate: Candidate, part: Part) -> float:
     """What one candidate, with these terms, costs."""
     total = LOG_ODDS + log(candidate.prior)
-    of, on = len(candidate.terms), len(part.terms)
-    if not candidate.together and of > 1:
-        wholes = {frozenset(one) for one in candidate.combinations}
-        if frozenset(part.terms) in wholes:
-            total -= log(2.0 * len(wholes))
-        else:
-            total -= log(2.0 * of * comb(of, on))
+    if not candidate.together and len(candidate.terms) > 1:
+        total -= _log_choices(candidate, part)
     free = 0 if candidate.fixed else part.free
     shapes = sum(not shape.whole for shape in candidate.shapes_of(part.terms))
     tried = 1
     for shape in candidate.shapes:
         tried *= len(shape.grid) if shape.whole and shape.grid else 1
     return total - LOG_COST * free - LOG_COST_SHAPE * shapes - log(tried)
+
+
+def _log_choices(candidate: Candidate, part: Part) -> float:
+    """What the choice of its terms costs: every place is as likely as all other sets together."""
+    of, on = len(candidate.terms), len(part.terms)
+    wholes = {frozenset(one) for one in candidate.combinations}
+    every = frozenset(one.name for one in candidate.terms)
+    if frozenset(part.terms) not in wholes:
+        return log(2.0 * of * comb(of, on))
+    others = len(wholes - {every})
+    if every not in wholes or not others:
+        return log(2.0 * len(wholes))
+    return log(4.0) if on == of else log(4.0 * others)

@@ -206,6 +206,14 @@ def test_an_implausible_number_is_a_warning() -> None:
     assert "Beware: coulomb_n" in paragraph(statement(causes=[cause(implausible=["coulomb_n"])]))
 
 
+def test_other_cables_that_are_as_likely_are_told() -> None:
+    one = cause()
+    one["where"] = {**one["where"], "or_cables": [list(range(1, 9)), [2]]}
+    told = paragraph(statement(causes=[one]))
+    assert "It could as well be in all cables or cable 2: these data hardly tell." in told
+    assert "as well be in" not in paragraph(statement(causes=[cause()]))
+
+
 def test_what_was_ruled_out_is_told_with_its_odds() -> None:
     said = ruled_out(statement())
     assert "That nothing was left out is ruled out, more than a million to 1." in said

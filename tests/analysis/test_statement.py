@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.diagnosis.statement import cables_of, not_ruled_out, parameters_of
+from analysis.diagnosis.statement import cables_of, not_ruled_out, other_cables, parameters_of
 from analysis.engine.cause import Cause
 from analysis.engine.system import Candidate, Shape, Term
 
@@ -37,6 +37,16 @@ def test_cables_are_those_that_stand_out_or_all_where_sizes_are_open(
     values: dict[str, float], sigma: float, cables: list[int]
 ) -> None:
     assert cables_of(cause(values, sigma)) == cables
+
+
+def test_cables_where_it_might_as_well_be_are_told_once_each() -> None:
+    upper = {f"coulomb_n@{k}": 0.2 for k in (1, 2, 3, 4)}
+    every = {f"coulomb_n@{k}": 0.15 for k in range(1, 9)}
+    one_large = {"coulomb_n@2": 0.5, "coulomb_n@7": 0.01}
+    elsewhere = (every, upper, one_large, dict(every))
+    found = replace(cause(upper, 0.02), elsewhere=elsewhere)
+    assert other_cables(found) == [[1, 2, 3, 4, 5, 6, 7, 8], [2]]
+    assert other_cables(cause(upper, 0.02)) == []
 
 
 def test_a_size_is_the_mean_over_the_cables_it_acts_on_and_told_for_each_that_was_asked() -> None:

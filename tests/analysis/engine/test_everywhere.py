@@ -4,8 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Term
+from analysis.engine.all_samples import all_samples_say
+from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -99,3 +102,23 @@ def test_one_cause_of_two_is_made_alike_and_the_other_stays() -> None:
     assert len(parts["kindred"].terms) == len(PLACES)
     assert parts["loss"] == both.parts["loss"]
     assert state.alike("kindred").alike("kindred").hypothesis.parts == parts
+
+
+def test_places_that_are_about_as_likely_are_told_beside_the_likeliest() -> None:
+    """One channel tells the sum: four places alike, or one, with as much; not with far less."""
+    system = Summed()
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    alike = {f"size@{p}": 0.25 for p in PLACES}
+
+    def led(sizes: dict[str, float], misfit: float) -> Followed:
+        state = State.at(part("loss", sizes, True), of("loss", sizes), KNOWN)
+        return Followed(ZERO, state, misfit=misfit)
+
+    ends = [led(alike, 1000.0), led({"size@2": 1.0}, 999.0), led({"size@3": 0.3}, 1200.0)]
+    nothing = Followed(ZERO, None, misfit=90000.0)
+    first, *_ = all_samples_say(refiner, ends, nothing, len(T_S))
+    told = {frozenset(first.hypothesis.parts["loss"].terms)}
+    told |= {frozenset(one["loss"]) for one in first.elsewhere}
+    assert told == {frozenset(alike), frozenset({"size@2"})}
+    assert all(sum(one["loss"].values()) == pytest.approx(1.0) for one in first.elsewhere)

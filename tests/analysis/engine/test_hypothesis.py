@@ -1,0 +1,46 @@
+"""What a hypothesis costs beforehand."""
+
+from math import exp, log
+
+import pytest
+
+from analysis.engine.hypothesis import Part, part_log_prior
+from analysis.engine.system import Candidate, Term
+
+PLACES = "12345678"
+TERMS = tuple(Term(f"size@{p}", "size", "N", p, 0.0, 5.0, 0.3) for p in PLACES)
+
+
+def group(places: str) -> tuple[str, ...]:
+    return tuple(f"size@{p}" for p in places)
+
+
+def law(*groups: str) -> Candidate:
+    return Candidate("law", "law", "plant", TERMS, combinations=tuple(map(group, groups)))
+
+
+def chosen(candidate: Candidate, places: str) -> float:
+    """How likely a choice of places is beforehand, beside one place that needs no choosing."""
+    alone = Candidate("law", "law", "plant", TERMS[:1])
+    part = part_log_prior(candidate, Part(group(places), shared=True))
+    return exp(part - part_log_prior(alone, Part(group("1"))))
+
+
+def test_all_places_are_as_likely_as_all_other_groups_together() -> None:
+    known = law(PLACES, "1234", "5678")
+    four = [chosen(known, one) for one in ("1234", "5678")]
+    assert chosen(known, PLACES) == pytest.approx(0.25)
+    assert sum(four) == pytest.approx(0.25)
+    assert four[0] == pytest.approx(four[1])
+
+
+def test_groups_without_all_places_share_as_much() -> None:
+    known = law("1234", "5678")
+    assert chosen(known, "1234") == pytest.approx(0.25)
+    assert chosen(law(PLACES), PLACES) == pytest.approx(0.5)
+
+
+def test_any_other_choice_shares_the_rest() -> None:
+    known = law(PLACES, "1234", "5678")
+    assert log(chosen(known, "3")) == pytest.approx(-log(2 * 8 * 8))
+    assert log(chosen(known, "37")) == pytest.approx(-log(2 * 8 * 28))
