@@ -39,8 +39,8 @@ CLOSE = 0.05
 """Where two simulations differ by no more than this, squared, of a sample's noise, on average, what
 a candidate does beside the one is what it does beside the other."""
 
-KEPT = 2.5e7
-"""What all candidates do to all samples is kept where it is no more numbers than this: 200 MB."""
+KEPT = 6e7
+"""What all candidates do to all samples is kept where it is no more numbers than this: 480 MB."""
 
 INDEPENDENT = 1e-9
 """Directions that hold less than this share of the strongest one's power are rounding."""
