@@ -111,7 +111,11 @@ class RecordedMachine:
         self.simulated = 0
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
-        self.peaks_n = self._peaks()
+        shown_n = self._shown()
+        self.peaks_n = self._peaks(shown_n)
+        self._candidates = tuple(
+            _as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
+        )
         self._finer = [self._finer_steps(record) for record in range(len(recordings))]
 
     def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
@@ -298,7 +302,7 @@ class RecordedMachine:
         job = self.job(Point(np.zeros(len(self._known))), record)
         return finer_steps(self.recordings[record], job.task, job.sight)
 
-    def _peaks(self) -> list[float]:
+    def _peaks(self, shown_n: Array) -> list[float]:
         """Highest tension of each cable over all runs, as simulated or as recorded, N.
 
         A cell that clips does so below what the rig file has, or below what it was seen to show.
@@ -311,11 +315,16 @@ class RecordedMachine:
             for job, rate_hz in zip(jobs, rates_hz, strict=True)
         ]
         highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
+        return [float(one) for one in np.maximum(highest, shown_n)]
+
+    def _shown(self) -> Array:
+        """Highest tension that each cell showed in any run, N; none: less than anything."""
+        highest = np.full(8, -np.inf)
         for bundle in self.bundles:
             if bundle.kind == "tension":
                 cables = [int(name.removeprefix("tension ")) - 1 for name in bundle.names]
                 highest[cables] = np.maximum(highest[cables], np.nanmax(bundle.value, axis=0))
-        return [float(one) for one in highest]
+        return highest
 
 
 def _as_seen(candidate: Candidate, slack: Sequence[int]) -> Candidate:
@@ -324,6 +333,17 @@ def _as_seen(candidate: Candidate, slack: Sequence[int]) -> Candidate:
         return candidate
     shown = tuple(f"slack_m@{cable}" for cable in slack)
     return replace(candidate, shown=shown, prior=1.0 if slack else HANGS_NOWHERE)
+
+
+def _as_clipped(candidate: Candidate, above_n: Array) -> Candidate:
+    """Clipping cells, each looked for where it shows no more: so far below what is simulated."""
+    if candidate.name != "cell_saturation":
+        return candidate
+    terms = tuple(
+        replace(one, step=float(np.clip(above, one.step, one.high)) if above < np.inf else one.step)
+        for one, above in zip(candidate.terms, above_n, strict=True)
+    )
+    return replace(candidate, terms=terms)
 
 
 def _cut(recording: Recording, upto: float) -> RampedSine | None:

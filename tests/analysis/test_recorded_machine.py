@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from recorded_by import STILL, by_model
 
+from analysis.diagnosis.candidates import SATURATION_STEP_N
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import seen_by
@@ -44,6 +45,17 @@ def test_a_cell_clips_below_the_highest_tension_that_was_simulated_or_recorded(
     assert more.peaks_n[6] > plain.peaks_n[6] + 0.9
     assert less.peaks_n[6] == pytest.approx(plain.peaks_n[6], abs=0.05)
     assert more.peaks_n[:6] == plain.peaks_n[:6]
+
+
+def test_a_cell_is_looked_for_to_clip_where_it_shows_no_more(recorded: Recording) -> None:
+    """However far that is below what other runs let expect: a smaller step does nothing in this."""
+    clipped = higher(recorded, 7, -1.0)
+    machine = RecordedMachine([clipped], NAMES, workers=1)
+    saturation = next(one for one in machine.candidates if one.name == "cell_saturation")
+    steps = {one.place: one.step for one in saturation.terms}
+    shown = max(float(one.value.max()) for one in clipped.bundles if one.names == ("tension 7",))
+    assert machine.peaks_n[6] - steps["7"] == pytest.approx(shown)
+    assert [steps[place] for place in "123456"] == [SATURATION_STEP_N] * 6
 
 
 def test_cables_that_hang_slack_are_shown_by_samples(recorded: Recording) -> None:
