@@ -129,9 +129,16 @@ def rivals(
 
 
 def _as_strong(system: System, law: Followed, state: State) -> State | None:
-    """A rival in the places of the cause that it stands for, as strong; None: it has others."""
+    """A rival as strong as the cause that it stands for; None: it is in other places.
+
+    Nor has it more than one number in a place: how those share what it does, straight lines tell.
+    """
     on = state.hypothesis.names
     (known,), (other,) = ({*law.names} - {*on}, {*on} - {*law.names})
+    candidate = state.candidates[other]
+    one_each = len({one.place for one in candidate.terms}) == len(candidate.terms)
+    if candidate.fixed or not one_each:
+        return None
     instead = begun_instead(Samples(system, everything=True), law, known, other)
     same = instead is not None and instead.hypothesis.key == state.hypothesis.key
     return instead if same else None
