@@ -201,13 +201,13 @@ def all_samples_say(
         scored.setdefault(one.names, []).append((score, state, one))
     fitted = []
     for same in scored.values():
-        score, state, one = max(same, key=lambda each: each[0])
+        same.sort(key=lambda each: -each[0])
+        score, state, one = same[0]
         there = refiner.at(state, refiner.directions_of(one.nuisance))
-        others = [each for each in same if score - AS_LIKELY < each[0] and each[1] is not state]
-        others.sort(key=lambda each: -each[0])
+        as_likely = [other for behind, other, _ in same[1:] if behind > score - AS_LIKELY]
         fitted.append(replace(
             there, log_score=score, point=one.point, left=one.misfit / count,
-            elsewhere=_places([each for _, each, _ in others], state),
+            elsewhere=_places(as_likely, state),
         ))  # fmt: skip
     return sorted(fitted, key=lambda one: -one.log_score)
 

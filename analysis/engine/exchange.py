@@ -17,7 +17,7 @@ from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Part
-from analysis.engine.instead import begun_instead
+from analysis.engine.instead import begun_instead, instead
 from analysis.engine.kin import lead_from
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen, groups
@@ -139,9 +139,11 @@ def _as_strong(system: System, law: Followed, state: State) -> State | None:
     one_each = len({one.place for one in candidate.terms}) == len(candidate.terms)
     if candidate.fixed or not one_each:
         return None
-    instead = begun_instead(Samples(system, everything=True), law, known, other)
-    same = instead is not None and instead.hypothesis.key == state.hypothesis.key
-    return instead if same else None
+    assert law.state is not None
+    there = instead(law.state, known, other)
+    if there is None or there.hypothesis.key != state.hypothesis.key:
+        return None
+    return begun_instead(Samples(system, everything=True), law, known, other)
 
 
 def plainest(
