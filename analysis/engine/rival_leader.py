@@ -19,8 +19,9 @@ from analysis.engine.judge import NOISE
 from analysis.engine.kin import kin_alike, kin_left, lead_from, lead_instead
 from analysis.engine.leader import Leader
 from analysis.engine.moved import freed
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.places import is_placed, placed_again
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.state import State
 from analysis.engine.way import HOPELESS
 
@@ -100,7 +101,7 @@ class RivalLeader(Leader):
             self._everywhere.add((known, best.names))
             alike = lead_from(self._system, best, state)
             self._keep(alike)
-            if not alike.to_end or alike.misfit > HOPELESS * best.misfit:
+            if not alike.to_end or alike.misfit > self._most_alike * best.misfit:
                 continue
             candidates = self._refiner.candidates
             family = candidates[known].family
@@ -109,6 +110,11 @@ class RivalLeader(Leader):
                     found = lead_instead(self._samples, alike, known, name)
                     if found is not None:
                         self._keep(found)
+
+    @property
+    def _most_alike(self) -> float:
+        """Of what the best leaves, so much may be left in all places alike, for kin to be tried."""
+        return FAINT if len(records_of(self._system)) >= SEVERAL else HOPELESS
 
     @property
     def _in_place(self) -> list[Followed]:
