@@ -300,7 +300,7 @@ def _saturation(effect: Effect) -> Candidate:
         for cable in CABLE_NUMBERS
     )
     # Over how much of what is cut off it bends: what cuts off nothing then does nothing.
-    knee = Shape("knee_share", "1", 0.5, 0.02, 5.0, (0.1, 1.0))
+    knee = Shape("knee_share", "1", 0.5, 0.002, 5.0, (0.1, 1.0))
     return Candidate(effect.name, effect.title, effect.acts.side, terms, (knee,), 0.1,
                      shareable=False, grows=True)  # fmt: skip
 

@@ -116,7 +116,7 @@ def shown_the_way(
         asked.add(one.names)
         again = follow_ring(
             system, best.nuisance, one.state, everything=True, near=True, ahead=best.costs,
-            lent=best.columns,
+            lent=best.lends,
         )  # fmt: skip
         found.append(again if cost_of(again) > cost_of(best) + CONTENDS else through(system, again))
     return found
@@ -153,7 +153,7 @@ def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) ->
         if one.to_end:
             start = _parameters_of(system, one)
             # What nuisances do there, not where parameters alone had come to.
-            lent = one.columns if one.columns is not None else nothing.columns
+            lent = one.lends or nothing.lends
             alone = follow_ring(
                 system, start, everything=True, near=True, ahead=one.costs, lent=lent
             )

@@ -13,7 +13,7 @@ from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import faint_search, guessed, one_more
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
-from analysis.engine.followed import Followed
+from analysis.engine.followed import Followed, Lent
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
 from analysis.engine.part import SEVERAL, records_of
@@ -81,7 +81,7 @@ class Start(NamedTuple):
     near
         Whether parameters alone ring in phase there.
     lent
-        What nuisances do to all samples about there, shape (nuisances, n); None: not known.
+        What nuisances do to all samples about there; None: not known.
     seen
         What candidates do about a place that may be near; None: not known.
     """
@@ -89,7 +89,7 @@ class Start(NamedTuple):
     nuisance: Array
     hypotheses: Sequence[Followed] = ()
     near: bool = False
-    lent: Array | None = None
+    lent: Lent | None = None
     seen: Faint | None = None
 
 
@@ -228,7 +228,9 @@ def _sharper(refiner: Refiner, about: Faint) -> tuple[Told, Start] | None:
         return None
     scales = scales_of(system, told.share)
     nuisance = np.where(scales < 1.0, 0.0, nothing.nuisance)
-    lent = None if nothing.columns is None else nothing.columns * scales[:, None]
+    lent = nothing.lends
+    if lent is not None:
+        lent = lent._replace(columns=lent.columns * scales[:, None])
     return told, Start(nuisance, near=True, lent=lent, seen=about)
 
 

@@ -114,10 +114,10 @@ def faint(
     followed = followed.about or followed
     samples = Samples(system, everything=True, share=followed.telling)
     (here,) = samples.residuals([followed.point])
-    # What nuisances do is known already, where they were led to just there.
+    # What nuisances do is known already, where they were led to just there, or near.
     known = np.zeros((0, len(here)))
-    if followed.columns is not None and followed.fresh and followed.telling == 1.0:
-        known = followed.columns
+    if followed.lends is not None and followed.fresh and followed.telling == 1.0:
+        known = followed.lends.columns
     own, steps = differences(samples, followed, here, known=len(known))
     numbers, count = len(steps), len(followed.nuisance)
     kept = _kept(near, followed, here)

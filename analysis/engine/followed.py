@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,16 @@ STEP, FINE = 5e-4, 0.025
 """Of the difference that tells what a parameter does, in sigmas, and of what is on, as a share of
 its step. Longer ones turn the phase: at 40 times this, what differences are off by is larger than
 what the weakest directions do, and steps along them lead nowhere."""
+
+
+class Lent(NamedTuple):
+    """What nuisances do to all samples about some hypothesis, and what is left there.
+
+    Shapes (nuisances, n) and (n,).
+    """
+
+    columns: Array
+    left: Array
 
 
 @dataclass(frozen=True)
@@ -44,12 +55,13 @@ class Followed:
     costs
         Share of the time at the end of each window -> squared misfit up to there, with that of the
         parameters to their prior.
-    columns
-        What nuisances do to all samples about there, shape (nuisances, n); None: not known.
+    lends
+        What nuisances do to all samples about there; None: not known.
     fresh
-        Whether that is of just there.
+        Whether that is of just there, or of what comes to the same.
     borrowed
-        Whether that is still, but for corrections, what was lent by another hypothesis.
+        Whether that is still, but for corrections, what was lent by another hypothesis, of what
+        does not come to the same.
     information
         What all samples tell of the free numbers about there, shape (numbers, numbers): the inverse
         of a covariance, without what was known of them before. None: not known.
@@ -65,7 +77,7 @@ class Followed:
     roughness: float = 1.0
     effort: float = 0.0
     costs: Mapping[float, float] = field(default_factory=dict)
-    columns: Array | None = None
+    lends: Lent | None = None
     fresh: bool = False
     borrowed: bool = False
     information: Array | None = None

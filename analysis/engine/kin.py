@@ -74,7 +74,7 @@ def lead_from(
     if not law.is_bent:
         return follow_ring(
             system, start, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
-            lent=law.columns,
+            lent=law.lends,
         )  # fmt: skip
     anew = follow_ring(system, np.zeros_like(start), state, everything=True)
     if anew.to_end and anew.left < noise_of(system):

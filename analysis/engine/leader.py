@@ -128,8 +128,8 @@ class Leader:
         self._begun.append(state)
         system, ahead = self._system, self._best.costs if self._led else None
         # What nuisances do, about what a new hypothesis is near to.
-        close = self._nothing if self._best.columns is None else self._best
-        lent = close.columns if near else None
+        close = self._nothing if self._best.lends is None else self._best
+        lent = close.lends if near else None
         found = follow_ring(
             system, nuisance, state, everything=True, ahead=ahead, near=near, lent=lent,
             passed=passed,
@@ -149,7 +149,7 @@ class Leader:
     def _keep(self, found: Followed) -> None:
         self._effort += found.effort
         if farthest_first(found) > farthest_first(self._best):
-            found = replace(found, columns=None)
+            found = replace(found, lends=None)
         self._led.append(found)
         self._misplaced.discard(found.names)
         if self._progress is not None:

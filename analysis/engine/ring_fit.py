@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.engine.followed import Followed
+from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
@@ -56,7 +56,7 @@ def follow_ring(
     near: bool = False,
     ahead: Mapping[float, float] | None = None,
     most: float = EFFORT,
-    lent: Array | None = None,
+    lent: Lent | None = None,
     known: Known | None = None,
     passed: float = 0.0,
 ) -> Followed:

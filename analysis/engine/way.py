@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.differences import differences
-from analysis.engine.followed import Followed
+from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.step import Stepper
@@ -66,6 +66,10 @@ RENEWED = 4
 and what parameters do about it stays nearly what it was. Where that was lent by another hypothesis,
 what is on is told anew as often."""
 
+SAME = 0.01
+"""Where two simulations differ by no more than this, squared, of a sample's noise, on average, what
+nuisances do about the one is what they do about the other."""
+
 
 class Way:
     """Where one is, and what every free number does about there, up to some share of the time.
@@ -77,8 +81,8 @@ class Way:
     start
         From where.
     lent
-        What nuisances do to all samples about another hypothesis that is near, shape
-        (nuisances, n): that serves until a step tells that it does not hold here.
+        What nuisances do to all samples about another hypothesis that is near: that serves until a
+        step tells that it does not hold here.
     known
         What is known of free numbers; None: priors of nuisances.
     """
@@ -87,7 +91,7 @@ class Way:
         self,
         samples: Samples,
         start: Followed,
-        lent: Array | None = None,
+        lent: Lent | None = None,
         known: Known | None = None,
     ) -> None:
         self._samples = samples
@@ -102,6 +106,7 @@ class Way:
         self._settled = False
         self._lent, self._serves = lent, False
         self._kept: Array | None = None
+        self._told: Array | None = None
         self._renewed = 0
 
     def hold(self, known: Known) -> None:
@@ -140,7 +145,8 @@ class Way:
 
     def _see(self, share: float) -> None:
         """What numbers do is not known over so much of the time."""
-        self._seen, self._columns, self._last, self._kept = share, None, None, None
+        self._seen, self._columns, self._last = share, None, None
+        self._kept, self._told = None, None
 
     def left(self, share: float) -> float:
         """Squared misfit of a sample up to a share of the time, on average."""
@@ -210,20 +216,32 @@ class Way:
         self._settled |= fresh and fell < WORTH_ANEW
         if fell > 0.0:
             return True
-        if fresh or self._settled or self._serves:
+        told = self._is_same and self.at.state is None
+        if fresh or self._settled or self._serves or told:
             return False
+        assert self._columns is not None
+        self._kept = self._columns[: len(self.at.nuisance)] if self._is_same else None
         self._columns = None
         return self.step(share, lost, best)
+
+    @property
+    def _is_same(self) -> bool:
+        """Whether what nuisances do was told of what comes to the same as what is here."""
+        if self._told is None:
+            return False
+        off = self._told - self.here
+        return float(off @ off) < SAME * len(off)
 
     def _differences(self) -> None:
         """What every number does here; where nuisances' was lent or kept, only what is on does."""
         self._serves = self._lent is not None and self._seen == 1.0
         if self._serves:
-            self._kept, self._lent = self._lent, None
+            assert self._lent is not None
+            (self._kept, self._told), self._lent = self._lent, None
         columns = np.zeros((0, len(self.here))) if self._kept is None else self._kept
-        self._kept, self._fresh = None, len(columns) == 0
-        if self._fresh:
-            self._renewed = 0
+        if len(columns) == 0:
+            self._told, self._renewed = self.here, 0
+        self._kept, self._fresh = None, self._is_same
         own, self._steps = differences(
             self._samples, self.at, self.here, self._seen, known=len(columns)
         )
@@ -255,7 +273,8 @@ class Way:
         if self._renewed >= RENEWED or self.at.state is None:
             self._serves = False
         elif self._serves:
-            self._lent = nuisances
+            assert self._told is not None
+            self._lent = Lent(nuisances, self._told)
         elif fell >= WORTH_ANEW:
             self._kept = nuisances
         self._renewed += 1
@@ -274,8 +293,9 @@ class Way:
         columns = self._last if self._columns is None else self._columns
         if columns is None or self._seen < 1.0:
             return self.at
-        fresh = self._fresh and self._columns is not None
+        assert self._told is not None
+        lends, fresh = Lent(columns[: len(self.at.nuisance)], self._told), self._is_same
         return replace(
-            self.at, columns=columns[: len(self.at.nuisance)], fresh=fresh,
-            borrowed=self._serves, information=columns @ columns.T,
+            self.at, lends=lends, fresh=fresh, borrowed=self._serves and not fresh,
+            information=columns @ columns.T,
         )  # fmt: skip

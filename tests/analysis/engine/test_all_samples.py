@@ -14,7 +14,7 @@ from analysis.engine.all_samples import (
     shown_the_way,
     tells_more,
 )
-from analysis.engine.followed import Followed
+from analysis.engine.followed import Followed, Lent
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -150,10 +150,10 @@ def test_nothing_is_led_again_with_what_parameters_do_where_it_starts(
         return Followed(nuisance, None, misfit=2.0 * COUNT)
 
     monkeypatch.setattr(all_samples, "follow_ring", spied)
-    here, elsewhere = np.ones((1, COUNT)), np.zeros((1, COUNT))
-    law = Followed(np.zeros(1), state_of(DAMPING, 0.1), misfit=COUNT, columns=here)
+    here, elsewhere = (Lent(np.ones((1, COUNT)), one * np.ones(COUNT)) for one in (0.0, 1.0))
+    law = Followed(np.zeros(1), state_of(DAMPING, 0.1), misfit=COUNT, lends=here)
     law = replace(law, costs={1.0: COUNT})
-    nothing = Followed(np.zeros(1), None, misfit=3.0 * COUNT, columns=elsewhere)
+    nothing = Followed(np.zeros(1), None, misfit=3.0 * COUNT, lends=elsewhere)
     assert all_samples.nothing_again(DAMPED, nothing, [law]).misfit == 2.0 * COUNT
     assert lent[0] is here
 
@@ -162,7 +162,7 @@ def test_of_two_causes_that_were_led_together_each_is_tried_alone(refiner: Refin
     both = Hypothesis({"damping": Part(("rate",)), "step": Part(("high",), False, {"moment": 9.0})})
     values = {("damping", "rate"): 0.19, ("step", "high"): 0.002}
     state = State.at(both, values, {one.name: one for one in (DAMPING, STEP)})
-    nothing = replace(follow_ring(DAMPED, np.zeros(1), everything=True), columns=None)
+    nothing = replace(follow_ring(DAMPED, np.zeros(1), everything=True), lends=None)
     search = FollowedSearch(refiner, nothing, 2)
     search.follow([Guess(state, np.zeros(1))], [])
     found = search.fitted()

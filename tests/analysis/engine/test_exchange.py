@@ -165,7 +165,7 @@ def test_rivals_of_what_explains_to_the_noise_wait_for_one_cause_more(
         return iter(())
 
     monkeypatch.setattr(rival_leader, "rivals", asked)
-    nothing = replace(follow_ring(system, np.zeros(1), everything=True), columns=None)
+    nothing = replace(follow_ring(system, np.zeros(1), everything=True), lends=None)
     search = FollowedSearch(refiner, nothing, 2)
     known = {one.name: one for one in system.candidates}
     state = State.at(Hypothesis({"true": Part(("size",))}), {("true", "size"): 1.0}, known)

@@ -10,7 +10,7 @@ import pytest
 from analysis.engine import ring_fit
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import one_more
-from analysis.engine.followed import Followed
+from analysis.engine.followed import Followed, Lent
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
@@ -217,10 +217,11 @@ def test_what_parameters_do_about_one_hypothesis_serves_the_next() -> None:
     """The same end, and of differences only those of what is on are simulated."""
     system = _Many(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
     law = follow_ring(system, np.zeros(8), state_of(DAMPING, 0.02), everything=True)
-    assert law.columns is not None
+    assert law.lends is not None
+    elsewhere = law.lends._replace(left=law.lends.left + 1.0)
     near = state_of(DAMPING, 0.19)
     own = follow_ring(system, law.nuisance, near, everything=True, near=True)
-    lent = follow_ring(system, law.nuisance, near, everything=True, near=True, lent=law.columns)
+    lent = follow_ring(system, law.nuisance, near, everything=True, near=True, lent=elsewhere)
     assert lent.borrowed
     assert not own.borrowed
     assert lent.misfit == pytest.approx(own.misfit, abs=0.5)
@@ -230,17 +231,30 @@ def test_what_parameters_do_about_one_hypothesis_serves_the_next() -> None:
 def test_what_was_lent_and_does_not_hold_is_simulated_anew() -> None:
     system = _Many(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
     law = follow_ring(system, np.zeros(8), state_of(DAMPING, 0.02), everything=True)
-    assert law.columns is not None
+    assert law.lends is not None
+    wrong = Lent(-law.lends.columns, law.lends.left + 1.0)
     found = follow_ring(
         system,
         law.nuisance + np.eye(8)[0] * 0.3,
         law.state,
         everything=True,
         near=True,
-        lent=-law.columns,
+        lent=wrong,
     )
     assert not found.borrowed
     assert found.misfit < law.misfit + 0.5
+
+
+def test_what_parameters_do_about_what_comes_to_the_same_is_not_simulated_again() -> None:
+    """Neither to go on from there, nor to tell what nuisances do at the end."""
+    system = _Many(ring(2.0 * SIGMA, 0.2, 0.0, 0.0))
+    law = follow_ring(system, np.zeros(8), state_of(DAMPING, 0.02), everything=True)
+    assert law.fresh
+    assert law.state is not None
+    again = follow_ring(system, law.nuisance, law.state, everything=True, near=True, lent=law.lends)
+    assert again.fresh
+    assert not again.borrowed
+    assert again.effort < 7.0
 
 
 def test_what_stays_far_behind_is_not_led_on_with_fresh_differences() -> None:
