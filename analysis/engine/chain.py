@@ -31,6 +31,10 @@ ASIDE = 0.3
 """A law may not hold in so many of the recordings, as a share of all, and still be what is there:
 its error of form shows most where a motion dies away."""
 
+AT_ODDS = 2
+"""So many recordings that take parameters farther than they may be, each led at once with those
+before it, and these are at odds with what is on."""
+
 EARLY = 0.5
 """What is lost before this share of the time, what others tell would not help."""
 
@@ -83,62 +87,113 @@ def chained(
         What nuisances may come to, squared and in sigmas: the recording that takes them farther
         is one that could not be led.
     """
-    part = Part(system, records)
-    at = first.led
-    told = Told(Followed(part.whole(at.nuisance, beside), at.state))
-    told.add(part, *first)
-    led = list(records)
-    left = [one for one in records_of(system) if one not in led]
-    later: list[str] = []
-    aside: list[str] = []
-    asked: dict[str, tuple[Told, Valley]] = {}
-    most_aside = 0 if at.state is None else int(ASIDE * len(records_of(system)))
-    together = len(led)
-    while left or later:
-        nearest = min(left or later, key=lambda name: left_in(system, name, told.at))
-        part = Part(system, (nearest,))
+    return _Chain(system, first, records, beside, most_strain).chained()
+
+
+class _Chain:
+    """Recordings that are led one after the other; parameters are those of `chained`."""
+
+    def __init__(
+        self,
+        system: System,
+        first: Valley,
+        records: Sequence[str],
+        beside: Array,
+        most_strain: float,
+    ) -> None:
+        self._system, self._most_strain = system, most_strain
+        part, at = Part(system, records), first.led
+        self._told = Told(Followed(part.whole(at.nuisance, beside), at.state))
+        self._told.add(part, *first)
+        self._led = list(records)
+        every = records_of(system)
+        self._left = [one for one in every if one not in records]
+        self._later: list[str] = []
+        self._aside: list[str] = []
+        self._at_odds: list[str] = []
+        self._asked: dict[str, tuple[Told, Valley]] = {}
+        self._most_aside = 0 if at.state is None else int(ASIDE * len(every))
+        self._together = len(records)
+
+    def chained(self) -> Chained:
+        """Where all of them lead to."""
+        stuck = None
+        while stuck is None and (self._left or self._later):
+            stuck = self._next()
+        at = self._told.at
+        aside = () if stuck else tuple(self._aside)
+        return Chained(at.nuisance, at.state, tuple(self._led), stuck or "", aside)
+
+    def _next(self) -> str | None:
+        """Lead the nearest; the recording that could not be led, where that is the end."""
+        told, waiting = self._told, self._left or self._later
+        nearest = min(waiting, key=lambda name: left_in(self._system, name, told.at))
+        part = Part(self._system, (nearest,))
         known = told.of(part)
         # Where nothing was told since, there is nothing new to say.
-        if nearest not in asked or asked[nearest][0] is not told:
-            asked[nearest] = told, _led(part, told.at, known)
-        _, (found, information) = asked[nearest]
+        if nearest not in self._asked or self._asked[nearest][0] is not told:
+            self._asked[nearest] = told, _led(part, told.at, known)
+        _, (found, information) = self._asked[nearest]
         arrived, early = _arrived(found, known), found.share < EARLY
-        lost = early or (not arrived and not left)
-        if lost and len(aside) < most_aside:
-            aside.append(nearest)
-            (left or later).remove(nearest)
-            continue
+        lost = early or (not arrived and not self._left)
+        if lost and len(self._aside) < self._most_aside:
+            self._aside.append(nearest)
+            waiting.remove(nearest)
+            return None
         if early:
-            return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
-        more = copy(told)
-        if arrived:
-            more.add(part, found, information)
-            arrived = more.at.strain < most_strain
-        if left:
-            left.remove(nearest)
-            if not arrived or _leaves(part, found):
-                # Where more is known it may still go without force.
-                later.append(nearest)
-                continue
-        elif not arrived:
-            if together == len(led):
-                return Chained(told.at.nuisance, told.at.state, tuple(led), nearest)
-            told, together = _together(system, led, told.at), len(led)
-            continue
-        else:
-            later.remove(nearest)
-        told = more
-        led.append(nearest)
-    return Chained(told.at.nuisance, told.at.state, tuple(led), aside=tuple(aside))
+            return nearest
+        more = self._without_strain(nearest, part, found, information) if arrived else None
+        if len(self._at_odds) == AT_ODDS:
+            return self._at_odds[0]
+        # Where more is known it may still go without force.
+        waits = bool(self._left) and (more is None or _leaves(part, found))
+        if self._left:
+            self._left.remove(nearest)
+        if waits:
+            self._later.append(nearest)
+            return None
+        return self._told_more(nearest, more)
+
+    def _told_more(self, name: str, more: Told | None) -> str | None:
+        """Go on with what one more has told; None: it does not go, but may from all at once."""
+        if more is None:
+            if self._together == len(self._led):
+                return name
+            self._told, _ = _together(self._system, self._led, self._told.at)
+            self._together = len(self._led)
+            return None
+        if name in self._later:
+            self._later.remove(name)
+        self._told = more
+        self._led.append(name)
+        return None
+
+    def _without_strain(
+        self, name: str, part: Part, found: Followed, information: Array
+    ) -> Told | None:
+        """What is told with a recording more; None: that takes parameters too far."""
+        more = copy(self._told)
+        more.add(part, found, information)
+        if more.at.strain < self._most_strain:
+            return more
+        if name in self._at_odds:
+            return None
+        # Quadratics bend: whether it is at odds with those before it, all of them at once tell.
+        both, goes = _together(self._system, [*self._led, name], more.at)
+        if goes and both.at.strain < self._most_strain:
+            self._together = len(self._led) + 1
+            return both
+        self._at_odds.append(name)
+        return None
 
 
-def _together(system: System, records: Sequence[str], at: Followed) -> Told:
-    """What recordings told, led once more all at once: quadratics bend."""
+def _together(system: System, records: Sequence[str], at: Followed) -> tuple[Told, bool]:
+    """What recordings told, led once more all at once, and whether no more than noise is left."""
     part = Part(system, records)
     found = follow_ring(part, part.own(at.nuisance), at.state, everything=True, near=True)
     told = Told(Followed(part.whole(found.nuisance, at.nuisance), found.state))
     told.add(part, found, information_of(part, found))
-    return told
+    return told, not _leaves(part, found)
 
 
 def _leaves(part: Part, found: Followed) -> bool:
