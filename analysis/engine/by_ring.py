@@ -84,6 +84,8 @@ class Start(NamedTuple):
         What nuisances do to all samples about there; None: not known.
     seen
         What candidates do about a place that may be near; None: not known.
+    stuck
+        See `FollowedSearch.follow_from`.
     """
 
     nuisance: Array
@@ -91,6 +93,7 @@ class Start(NamedTuple):
     near: bool = False
     lent: Lent | None = None
     seen: Faint | None = None
+    stuck: bool = False
 
 
 def by_ring(
@@ -123,9 +126,9 @@ def by_ring(
     system = refiner.system
     if start is not None and start.hypotheses:
         nothing = _standing(system, start.nuisance)
-        led = FollowedSearch(refiner, nothing, most_causes, following, near=True)
-        led.follow_from(start.hypotheses)
-        rung = led.fitted() if led.arrived else None
+        led = FollowedSearch(refiner, nothing, most_causes, following, near=True, enough=enough)
+        led.follow_from(start.hypotheses, stuck=start.stuck)
+        rung = led.fitted() if led.arrived and not led.ended else None
         return Found((), rung or (), faint=rung is not None)
     start = Start(refiner.calibrated.at) if start is None else start
     nothing = _nothing(system, start)

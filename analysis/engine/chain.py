@@ -32,8 +32,8 @@ ASIDE = 0.3
 its error of form shows most where a motion dies away."""
 
 AT_ODDS = 2
-"""So many recordings that take parameters farther than they may be, each led at once with those
-before it, and these are at odds with what is on."""
+"""So many recordings that take parameters alone farther than they may be, each led at once with
+those before it, and something is left out; of a law, one: it says what there is beside that."""
 
 EARLY = 0.5
 """What is lost before this share of the time, what others tell would not help."""
@@ -62,6 +62,11 @@ class Chained:
     led: tuple[str, ...]
     stuck: str = ""
     aside: tuple[str, ...] = ()
+
+    @property
+    def followed(self) -> Followed:
+        """Where the whole system was led to."""
+        return Followed(self.nuisance, self.state)
 
 
 def chained(
@@ -143,7 +148,7 @@ class _Chain:
         if early:
             return nearest
         more = self._without_strain(nearest, part, found, information) if arrived else None
-        if len(self._at_odds) == AT_ODDS:
+        if len(self._at_odds) == (AT_ODDS if told.at.state is None else 1):
             return self._at_odds[0]
         # Where more is known it may still go without force.
         waits = bool(self._left) and (more is None or _leaves(part, found))

@@ -161,14 +161,26 @@ class FollowedSearch(ToldLeader):
     def _is_strained(led: Followed) -> bool:
         return led.to_end and led.strain > STRAINED
 
-    def follow_from(self, begun: Sequence[Followed]) -> None:
+    def follow_from(self, begun: Sequence[Followed], *, stuck: bool = False) -> None:
         """Lead hypotheses of some of the recordings in all of them.
 
         Parameters
         ----------
         begun
             Where they came to, the best first.
+        stuck
+            One of these recordings is where the first could not be led on: before all else it is
+            asked what there is beside that.
         """
+        if stuck:
+            at = begun[0]
+            led = follow_ring(self._system, at.nuisance, at.state, everything=True, near=True)
+            # At the end strained parameters tell what they make up for.
+            self._keep(replace(led, about=None))
+            self._one_more()
+            if self._is_enough():
+                return
+            begun = begun[1:]
         for number, one in enumerate(begun):
             if one.state is not None and not (number > 0 and self._effort > self._most):
                 self._lead(one.nuisance, one.state, near=self._near)

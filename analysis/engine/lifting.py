@@ -1,17 +1,19 @@
 """What one recording says, led through all of them."""
 
 from collections.abc import Container, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from analysis.engine.aside import but_for
-from analysis.engine.by_ring import Found
-from analysis.engine.chain import chained
+from analysis.engine.by_ring import Found, Start, by_ring
+from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAR
@@ -54,9 +56,30 @@ class Lifting:
         return bool(self.said.fitted)
 
     def enough(self, led: Followed) -> bool:
-        """Whether a law that explains the pilot to the noise came through, and nothing bent."""
+        """Whether a law that explains the pilot to the noise came through, and nothing bent.
+
+        Where parameters would have to bend for one of the recordings, that leads beside the pilot
+        from there on: it says what there is beside that law.
+        """
         through = lifted(self._refiner.system, self._part, [led], self._beside, FAR)
-        return self._weigh(through.free, through.aside)
+        if self._weigh(through.free, through.aside):
+            return True
+        return through.stuck is not None and self._grown(through.stuck)
+
+    def _grown(self, stuck: Chained) -> bool:
+        """Whether what is led beside a law, where that could not be led on, came through."""
+        at = stuck.followed
+        if len(at.names) >= self._most_causes:
+            return False
+        part = Part(self._refiner.system, (*self._part.records, stuck.stuck))
+        grown = Lifting(self._refiner, part, at.nuisance, self._most_causes, self._tell)
+        own = Refiner(part, *look(part, self._tell))
+        led = replace(at, nuisance=part.own(at.nuisance))
+        start = Start(led.nuisance, [led], stuck=True)
+        by_ring(own, self._most_causes, self._tell, start, grown.enough)
+        if grown.leads:
+            self.said = grown.said
+        return grown.leads
 
     def lift(self, found: Sequence[Fitted], wanted: Container[tuple[str, ...]] = ()) -> None:
         """Lead all that contend in the pilot, even if parameters have to bend.
@@ -93,12 +116,13 @@ def _contending(found: Sequence[Fitted], wanted: Container[tuple[str, ...]] = ()
 class Lifted(NamedTuple):
     """Hypotheses that came through all recordings, and those for which parameters had to bend.
 
-    All recordings but those that stand aside.
+    All recordings but those that stand aside; and how far the first came that did not.
     """
 
     free: list[Followed]
     strained: list[Followed]
     aside: tuple[str, ...] = ()
+    stuck: Chained | None = None
 
 
 def lifted(
@@ -113,6 +137,7 @@ def lifted(
     Other laws of a kind, and a kind more or less, are led from there when all recordings are.
     """
     came: list[tuple[Followed, tuple[str, ...]]] = []
+    stuck: Chained | None = None
     known: list[set[str]] = []
     family = {one.name: one.family or one.name for one in system.candidates}
     for one in found:
@@ -122,9 +147,10 @@ def lifted(
         at = Followed(one.nuisance, one.state.whole())
         told = Valley(at, information_of(part, at))
         led = chained(system, told, records_of(part), beside, most_strain)
-        if led.stuck or led.state is None:
+        if led.stuck:
+            stuck = stuck or led
             continue
-        there = Followed(led.nuisance, led.state)
+        there = led.followed
         came.append((there, led.aside))
         if there.strain <= FAR:
             known.append(kinds)
@@ -132,4 +158,4 @@ def lifted(
     aside = min((one for _, one in came), key=len, default=())
     same = [one for one, without in came if {*without} <= {*aside}]
     free = [one for one in same if one.strain <= FAR]
-    return Lifted(free, [one for one in same if one.strain > FAR], aside)
+    return Lifted(free, [one for one in same if one.strain > FAR], aside, stuck)

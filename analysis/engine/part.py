@@ -34,7 +34,8 @@ class Part:
 
     def __init__(self, system: System, records: Sequence[str]) -> None:
         self._system = system
-        self._records = tuple(records)
+        self.records = tuple(records)
+        """Their names."""
         self._chosen = [i for i, one in enumerate(system.bundles) if one.record in records]
         self.places = np.array(
             [i for i, one in enumerate(system.nuisances) if one.record in ("", *records)],
@@ -82,7 +83,7 @@ class Part:
 
     def _of_whole(self, point: Point) -> Point:
         """The same for the whole system, of this part's recordings."""
-        return replace(point, nuisance=self.whole(point.nuisance), records=self._records)
+        return replace(point, nuisance=self.whole(point.nuisance), records=self.records)
 
 
 def records_of(system: System) -> list[str]:

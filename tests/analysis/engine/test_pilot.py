@@ -64,11 +64,16 @@ class LetGoOften:
     )
     candidates: Sequence[Candidate] = (cause("damping", 0.1), cause("hardening", 0.01))
 
-    def __init__(self, damping_1_per_s: float = DAMPING_1_PER_S, odd: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        damping_1_per_s: float = DAMPING_1_PER_S,
+        odd: Sequence[str] = (),
+        hardening: float = 0.0,
+    ) -> None:
         self.simulated: list[str] = []
         draw = np.random.default_rng(1)
         truth = [
-            self._one(name, TONE, 0.5, damping_1_per_s, 0.0)
+            self._one(name, TONE, 0.5, damping_1_per_s, hardening)
             + WANDERS * HEIGHTS[name] * (name in odd) * np.sin(T_S**1.5)[:, None]
             for name in HEIGHTS
         ]
@@ -104,7 +109,7 @@ class LetGoOften:
         return np.asarray(ring * (T_S >= 1.0) + OFFSET * offset)[:, None]
 
 
-def refiner(system: LetGoOften) -> Refiner:
+def refiner(system: System) -> Refiner:
     return Refiner(system, *look(system))
 
 
@@ -232,6 +237,64 @@ def test_what_holds_in_more_recordings_is_weighed_by_them(monkeypatch: pytest.Mo
     came = lifted(system, Part(system, ("low",)), found, np.zeros(5))
     assert came.aside == ()
     assert [one.names for one in came.free] == [("hardening",)]
+
+
+def law_of(system: LetGoOften, *names: str) -> State:
+    known = {one.name: one for one in system.candidates}
+    hypothesis = Hypothesis({one: OfHypothesis((one,)) for one in names})
+    return State.at(hypothesis, {(one, one): DAMPING_1_PER_S for one in names}, known)
+
+
+def test_where_a_law_cannot_be_led_on_that_recording_says_what_there_is_beside_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    system = LetGoOften()
+    asked: list[tuple[tuple[str, ...], Start]] = []
+
+    def stuck_alone(whole: System, first: Valley, *_: object) -> Chained:
+        stuck = "high" if first.led.names == ("damping",) else ""
+        return Chained(np.zeros(5), first.led.state, ("low",), stuck)
+
+    def both(
+        of: Refiner,
+        most_causes: int,
+        tell: Tell | None,
+        start: Start,
+        enough: Callable[[Followed], bool],
+    ) -> Found:
+        assert isinstance(of.system, Part)
+        asked.append((of.system.records, start))
+        told = enough(Followed(start.nuisance, law_of(system, "damping", "hardening")))
+        return Found((), (), faint=told)
+
+    def weighed(of: Refiner, begun: Sequence[Followed], *_: object) -> Found:
+        return Found((), [of.standing(one.state, one.nuisance) for one in begun if one.state], True)
+
+    monkeypatch.setattr(lifting, "chained", stuck_alone)
+    monkeypatch.setattr(lifting, "by_ring", both)
+    monkeypatch.setattr(lifting, "but_for", weighed)
+    whole = lifting.Lifting(refiner(system), Part(system, ("low",)), np.zeros(5), 2, None)
+    assert whole.enough(Followed(np.zeros(2), law_of(system, "damping")))
+    ((records, start),) = asked
+    assert records == ("low", "high")
+    assert start.stuck
+    assert [one.names for one in start.hypotheses] == [("damping",)]
+    assert whole.said.fitted[0].hypothesis.names == ("damping", "hardening")
+
+
+def test_beside_a_law_that_could_not_be_led_on_one_cause_more_is_asked_for_first() -> None:
+    system = LetGoOften(hardening=5e-4)
+    own = refiner(Part(system, ("low", "high")))
+    nothing = Followed(np.zeros(3), None, misfit=1e9)
+    search = FollowedSearch(own, nothing, 2, near=True)
+    search.follow_from(
+        [Followed(np.array([TONE, 0.5, 0.5]), law_of(system, "damping"))], stuck=True
+    )
+    assert [one.names for one in search._led[:2]] == [("damping",), ("damping", "hardening")]
+    found = search.fitted()
+    assert found is not None
+    assert found[0].hypothesis.names == ("damping", "hardening")
+    assert found[0].values["hardening", "hardening"] == pytest.approx(5e-4, rel=0.1)
 
 
 def test_a_recording_in_which_the_law_does_not_hold_stands_aside_and_leaves_doubt() -> None:
