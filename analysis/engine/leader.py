@@ -89,6 +89,7 @@ class Leader:
         self._placed: set[tuple[object, ...]] = set()
         self._misplaced: set[tuple[str, ...]] = set()
         self._fewer: list[Followed] = []
+        self._needed: dict[tuple[tuple[str, ...], tuple[str, ...]], float] = {}
         self._everywhere: set[tuple[str, tuple[str, ...]]] = set()
         self._anew: set[tuple[str, ...]] = set()
         self._asked_more = False

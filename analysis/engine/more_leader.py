@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
@@ -14,7 +16,7 @@ from analysis.engine.faint_search import eased_by, nuisances_of, one_more, promi
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import lead_from, lead_instead, part_of_the_way
-from analysis.engine.ring_fit import FAR
+from analysis.engine.ring_fit import BEHIND, FAR
 from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
@@ -147,10 +149,15 @@ class MoreLeader(RivalLeader):
         for name in whole.names:
             state = whole.state.without(name)
             # However much was tried: a second cause may stand for what the first had not been.
-            if state.hypothesis.names in known:
+            tried = whole.names, state.hypothesis.names
+            needed = cost_of(whole) > self._needed.get(tried, np.inf) - BEHIND
+            if state.hypothesis.names in known or needed:
                 continue
             fewer = lead_from(self._system, whole, state)
             self._keep(fewer)
+            if cost_of(fewer) > cost_of(whole) + 2.0 * BEHIND:
+                # From about as good a place it would be as far behind.
+                self._needed[tried] = cost_of(whole)
             if cost_of(fewer) < close:
                 self._lead_kin(fewer)
                 self._one_less(fewer)

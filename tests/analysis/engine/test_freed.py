@@ -1,5 +1,7 @@
 """Parameters that were bent far beside a cause are led as a cause of their own."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -78,6 +80,26 @@ def test_each_of_what_came_as_close_as_the_best_is_led_alone() -> None:
     led = len(search._led)
     search._one_less(pair)
     assert len(search._led) == led
+
+
+def test_what_stayed_far_behind_without_a_cause_needs_it_from_about_as_good_a_place() -> None:
+    system = Detuned(ring(0.0, RATE, 0.0, 0.0))
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    search = FollowedSearch(refiner, follow_ring(system, np.zeros(1), everything=True), 2)
+    known = {one.name: one for one in system.candidates}
+    start = freed(system, known, beside_damping(system, 3.0), "tone")
+    assert start.state is not None
+    pair = lead_from(system, start, start.state)
+    search._one_less(pair)
+    led = [one.names for one in search._led]
+    assert sorted(led) == [("damping",), ("tone",)]
+    # The tone alone loses the ring that dies away; the damping alone comes as close as both.
+    search._one_less(replace(pair, effort=0.0))
+    assert [one.names for one in search._led] == led
+    search._led.clear()
+    search._one_less(replace(pair, misfit=pair.misfit - 1e4))
+    assert ("tone",) in {one.names for one in search._led}
 
 
 def test_what_had_made_up_for_something_is_led_from_the_likeliest_parameters() -> None:
