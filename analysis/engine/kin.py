@@ -13,6 +13,7 @@ from analysis.engine.all_samples import cost_of, noise_of
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.instead import begun_instead
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
@@ -56,8 +57,8 @@ def lead_from(
     """Lead a hypothesis that is near another from where that one has come to the end.
 
     What nuisances do there is taken to be what they do here, unless they made up for something
-    there: then it may be far to where they need not, and it is led by growing windows from the
-    likeliest parameters first.
+    there: then it may be far to where they need not, and one recording, or two, are led by growing
+    windows from the likeliest parameters first.
 
     Parameters
     ----------
@@ -71,7 +72,8 @@ def lead_from(
         And the parameters, in sigmas, shape (p,); None: where the other has come to.
     """
     start = law.nuisance if nuisance is None else nuisance
-    if not law.is_bent:
+    # Of several recordings each was led on its own: all at once, windows lose that again.
+    if not law.is_bent or len(records_of(system)) >= SEVERAL:
         return follow_ring(
             system, start, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
             lent=law.lends,

@@ -17,7 +17,7 @@ from analysis.engine.faint_search import others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
-from analysis.engine.part import records_of
+from analysis.engine.part import SEVERAL, records_of
 from analysis.engine.places import is_placed
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import GOES_ON, follow_ring
@@ -136,7 +136,9 @@ class Leader:
             passed=passed,
         )  # fmt: skip
         lost = self._best.to_end and found.misfit > HOPELESS * self._best.misfit
-        if near and found.share < 1.0 and not lost:
+        # Of several recordings each was led on its own: all at once, windows lose that again.
+        few = len(records_of(system)) < SEVERAL
+        if near and found.share < 1.0 and few and not lost:
             self._effort += found.effort
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
