@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine import lifting, pilot
+from analysis.engine import kin, lifting, pilot
 from analysis.engine.by_ring import Found, Led, Start, by_ring
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
@@ -16,6 +16,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.hypothesis import Part as OfHypothesis
+from analysis.engine.kin import lead_from
 from analysis.engine.lifting import lifted
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
@@ -295,6 +296,23 @@ def test_beside_a_law_that_could_not_be_led_on_one_cause_more_is_asked_for_first
     assert found is not None
     assert found[0].hypothesis.names == ("damping", "hardening")
     assert found[0].values["hardening", "hardening"] == pytest.approx(5e-4, rel=0.1)
+
+
+@pytest.mark.parametrize(("records", "begins"), [(("low",), 2), (tuple(HEIGHTS), 1)])
+def test_beside_parameters_that_are_bent_several_recordings_are_led_from_there_alone(
+    monkeypatch: pytest.MonkeyPatch, records: tuple[str, ...], begins: int
+) -> None:
+    system = LetGoOften()
+    part, starts = Part(system, records), []
+
+    def spied(of: System, nuisance: Array, state: State, **how: object) -> Followed:
+        starts.append(float(nuisance[0]))
+        return Followed(nuisance, state, share=0.5)
+
+    monkeypatch.setattr(kin, "follow_ring", spied)
+    bent = np.full(len(part.nuisances), 5.0)
+    lead_from(part, Followed(bent, law_of(system, "damping")), law_of(system, "hardening"))
+    assert starts == [0.0, 5.0][-begins:]
 
 
 def test_a_recording_in_which_the_law_does_not_hold_stands_aside_and_leaves_doubt() -> None:
