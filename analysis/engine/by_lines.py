@@ -57,13 +57,16 @@ def by_lines(
         return Found(singles, ranked, faint=False, foretells=led.search.foretells)
     alone = _guesses(finder.ranked())
     if led is not None:
-        told = [*_to_follow(refiner, null, led.single, alone), *_as_likely(refiner, null, alone)]
-        led.search.follow(told, [*alone, *led.single], seen=True)
+        likely = _to_follow(refiner, null, led.single, alone)
+        # Lines may tell nothing of what the first moments of a motion tell.
+        single = led.single if likely else led.promised(refiner)
+        told = [*(likely or single[:FOLLOWED]), *_as_likely(refiner, null, alone)]
+        led.search.follow(told, [*alone, *single], seen=True)
         if led.search.ended:
             return Found(singles, (), faint=True)
         poor = not led.search.arrived or led.search.is_poor
         if poor and led.search.foretells is None:
-            led.search.follow(_both(refiner, null, led.single, alone), [], seen=True)
+            led.search.follow(_both(refiner, null, single, alone), [], seen=True)
         if led.search.foretells is not None:
             ranked = finder.ranked()
             return Found(singles, ranked, faint=False, foretells=led.search.foretells)

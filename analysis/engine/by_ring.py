@@ -62,10 +62,21 @@ class Found(NamedTuple):
 
 
 class Led(NamedTuple):
-    """What was led to the ring's phase so far, and what the ring promised alone."""
+    """What was led to the ring's phase so far, and what the ring promised alone.
+
+    Where parameters alone foretell nothing that moves, it was not asked: where they have come.
+    """
 
     search: FollowedSearch
     single: Sequence[Guess]
+    still: Followed | None = None
+
+    def promised(self, refiner: Refiner) -> Sequence[Guess]:
+        """What the ring promises, from the moment on at which something moves if need be."""
+        if self.still is None:
+            return self.single
+        about = faint(refiner.system, self.still, _free(refiner.system))
+        return [guessed(about, refiner, one) for one in one_more(about, refiner)]
 
 
 class Start(NamedTuple):
@@ -135,7 +146,7 @@ def by_ring(
     near = nothing.left < FAINT and nothing.about is None
     if enough is None and _tells_nothing(system, nothing):
         led = FollowedSearch(refiner, nothing, most_causes, following)
-        return Found((), (), faint=False, led=Led(led, []))
+        return Found((), (), faint=False, led=Led(led, [], nothing))
     about = faint(system, nothing, _free(system), following, near=start.seen)
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
@@ -149,9 +160,8 @@ def by_ring(
             return Found(screened, faintly, faint=True, sharper=sharper)
         single = [Guess.of(one) for one in faintly if len(one.hypothesis.parts) == 1]
     else:
-        promised = one_more(about, refiner)
-        screened, faintly = promised, []
-        single = [guessed(about, refiner, one) for one in promised]
+        screened, faintly = one_more(about, refiner), []
+        single = [guessed(about, refiner, one) for one in screened]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)

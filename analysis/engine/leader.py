@@ -107,6 +107,8 @@ class Leader:
 
     def fitted(self) -> list[Fitted] | None:
         """Hypotheses with the scores of all samples, the best first; None: none comes near."""
+        if not self._led:
+            return None
         count = len(self._samples.shares)
         self._led = shown_the_way(self._system, led_through(self._system, self._led), self._led)
         first = sorted(self._led, key=farthest_first)
@@ -136,9 +138,10 @@ class Leader:
             passed=passed,
         )  # fmt: skip
         lost = self._best.to_end and found.misfit > HOPELESS * self._best.misfit
-        # Of several recordings each was led on its own: all at once, windows lose that again.
-        few = len(records_of(system)) < SEVERAL
-        if near and found.share < 1.0 and few and not lost:
+        # Of several recordings each was led on its own. Where all at once are near enough for a
+        # step, windows lose that again.
+        windows = len(records_of(system)) < SEVERAL or found.effort < len(found.numbers)
+        if near and found.share < 1.0 and windows and not lost:
             self._effort += found.effort
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)
         if found.share < 1.0:
