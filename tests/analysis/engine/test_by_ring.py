@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.by_ring import _abreast, _is_hollow, _leads_bent
+from analysis.engine import by_lines
+from analysis.engine.by_ring import Led, _abreast, _is_hollow, _leads_bent
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
+from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.system import Candidate, Nuisance, Term
 from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring
 
@@ -50,3 +53,22 @@ def test_parameters_are_in_a_hollow_where_nothing_promises_to_explain_what_they_
 
 def test_where_parameters_are_bent_and_the_ring_promises_nothing_lines_are_asked() -> None:
     assert _abreast([]) == []
+
+
+def test_where_lines_tell_nothing_what_the_first_moments_of_a_motion_tell_is_led(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """And where nothing could be led, nothing is said, either."""
+    system = Tuned(ring(0.0, 0.2, 0.0, 0.0))
+    refiner = Refiner(system, *look(system))
+    still = follow_ring(system, np.zeros(1), everything=True, most=0.0)
+    search = FollowedSearch(refiner, still, 2)
+    assert search.fitted() is None
+    monkeypatch.setattr(by_lines, "_to_follow", lambda *_: [])
+    monkeypatch.setattr(by_lines, "_as_likely", lambda *_: [])
+    led = Led(search, [], replace(still, telling=0.3))
+    assert led.promised(refiner)[0].hypothesis.names == ("damping",)
+    found = by_lines.by_lines(refiner, refiner.nothing(), 2, None, led)
+    assert found.faint
+    assert found.fitted[0].hypothesis.names == ("damping",)
+    assert found.fitted[0].values["damping", "rate"] == pytest.approx(0.2, abs=0.01)
