@@ -11,7 +11,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.judge import NOISE
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import has_several
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
@@ -67,7 +67,7 @@ def led_through(system: System, led: Sequence[Followed]) -> list[Followed]:
         place = min(asked, key=lambda k: cost_of(found[k]))
         best = min(found, key=cost_of)
         # What came from another law's parameters may have come to a hollow beside its valley.
-        anew = len(records_of(system)) < SEVERAL and _kinds(found[place]) != _kinds(best)
+        anew = not has_several(system) and _kinds(found[place]) != _kinds(best)
         found[place] = through(system, found[place], anew=anew)
     return found
 
@@ -106,7 +106,7 @@ def shown_the_way(
         The same as they were led at first: what contended then may only not have found the way.
     """
     best, least = min(led, key=cost_of), min(map(cost_of, before))
-    if cost_of(best) > least - WORTH_IT or len(records_of(system)) >= SEVERAL:
+    if cost_of(best) > least - WORTH_IT or has_several(system):
         return list(led)
     found, asked = list(led), {best.names}
     for one in sorted(before, key=cost_of):

@@ -16,7 +16,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import has_several
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
@@ -250,7 +250,7 @@ def _sharper(refiner: Refiner, about: Faint) -> tuple[Told, Start] | None:
 def _is_hollow(system: System, nothing: Followed, faintly: Sequence[Fitted]) -> bool:
     """Whether parameters leave more than noise, and nothing promises to explain much of that."""
     noise = noise_of(system)
-    if nothing.left < noise or len(records_of(system)) >= SEVERAL:
+    if nothing.left < noise or has_several(system):
         return False
     alone = next(one for one in faintly if not one.hypothesis.parts)
     beyond = 0.5 * nothing.misfit * (1.0 - noise / nothing.left)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from analysis.engine.evidence import Frame, Problem, directions
 from analysis.engine.lens import Lens
-from analysis.engine.part import SEVERAL, records_of, rings
+from analysis.engine.part import has_several, rings
 from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
 from analysis.engine.system import Array, Point, System
 from analysis.engine.variance import base_variance, form_variance
@@ -127,7 +127,7 @@ def calibrate(
         fresh = not better or not straight
         if ringing:
             fresh = fresh and left < HOPELESS * int(used.sum())
-            fresh = fresh and len(records_of(system)) < SEVERAL
+            fresh = fresh and not has_several(system)
         if fresh:
             columns = nuisance_columns(system, lens, at, progress)
     base = base_variance(lens, features, data)

@@ -21,7 +21,7 @@ from analysis.engine.kin import (
 )
 from analysis.engine.leader import EFFORT
 from analysis.engine.more_leader import FAR_BEHIND
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import has_several
 from analysis.engine.refine import Refiner
 from analysis.engine.released import released
 from analysis.engine.ring_fit import FAR, follow_ring
@@ -304,7 +304,7 @@ class FollowedSearch(ToldLeader):
         if best.state is None or not best.to_end or best.names in self._anew:
             return False
         # Of several recordings each was led over its own ridges.
-        if len(records_of(self._system)) >= SEVERAL:
+        if has_several(self._system):
             return False
         self._anew.add(best.names)
         beyond = valley(self._system, best).led

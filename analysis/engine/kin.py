@@ -13,7 +13,7 @@ from analysis.engine.all_samples import cost_of, noise_of
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.instead import begun_instead
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import has_several
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
@@ -73,7 +73,7 @@ def lead_from(
     """
     start = law.nuisance if nuisance is None else nuisance
     # Of several recordings each was led on its own: all at once, windows lose that again.
-    if not law.is_bent or len(records_of(system)) >= SEVERAL:
+    if not law.is_bent or has_several(system):
         return follow_ring(
             system, start, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
             lent=law.lends,

@@ -17,7 +17,7 @@ from analysis.engine.faint_search import others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import has_several, records_of
 from analysis.engine.places import is_placed
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import GOES_ON, follow_ring
@@ -140,7 +140,7 @@ class Leader:
         lost = self._best.to_end and found.misfit > HOPELESS * self._best.misfit
         # Of several recordings each was led on its own. Where all at once are near enough for a
         # step, windows lose that again.
-        windows = len(records_of(system)) < SEVERAL or found.effort < len(found.numbers)
+        windows = not has_several(system) or found.effort < len(found.numbers)
         if near and found.share < 1.0 and windows and not lost:
             self._effort += found.effort
             found = follow_ring(system, nuisance, state, everything=True, ahead=ahead)

@@ -91,6 +91,11 @@ def records_of(system: System) -> list[str]:
     return list(dict.fromkeys(one.record for one in system.bundles))
 
 
+def has_several(system: System) -> bool:
+    """Whether it has so many recordings that they are led one after the other."""
+    return len(records_of(system)) >= SEVERAL
+
+
 def rings(system: System) -> bool:
     """Whether the system has tones of its own."""
     return any(bundle.tones_hz for bundle in system.bundles)

@@ -19,7 +19,7 @@ from analysis.engine.judge import NOISE
 from analysis.engine.kin import kin_alike, kin_left, lead_from, lead_instead
 from analysis.engine.leader import Leader
 from analysis.engine.moved import freed
-from analysis.engine.part import SEVERAL, records_of
+from analysis.engine.part import has_several
 from analysis.engine.places import is_placed, placed_again
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.state import State
@@ -114,7 +114,7 @@ class RivalLeader(Leader):
     @property
     def _most_alike(self) -> float:
         """Of what the best leaves, so much may be left in all places alike, for kin to be tried."""
-        return FAINT if len(records_of(self._system)) >= SEVERAL else HOPELESS
+        return FAINT if has_several(self._system) else HOPELESS
 
     @property
     def _in_place(self) -> list[Followed]:

@@ -12,7 +12,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.moved import moved_far, released
-from analysis.engine.part import SEVERAL, records_of, rings
+from analysis.engine.part import has_several, rings
 from analysis.engine.pilot import by_pilot
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
@@ -101,7 +101,7 @@ def search(
 
     found = Found((), (), faint=False)
     if rings(system):
-        several = len(records_of(system)) >= SEVERAL
+        several = has_several(system)
         if several:
             found = by_pilot(refiner, most_causes, tell, start)
         else:

@@ -35,6 +35,12 @@ def beside_damping(system: Detuned, off: float) -> Followed:
     return follow_ring(system, np.array([off]), state, everything=True, near=True)
 
 
+def search_of(system: Detuned) -> FollowedSearch:
+    """A search that has led nothing yet."""
+    nothing = follow_ring(system, np.zeros(1), everything=True)
+    return FollowedSearch(Refiner(system, *look(system)), nothing, 2)
+
+
 def test_what_is_freed_is_the_same_simulation_without_its_strain() -> None:
     system = Detuned(ring(OFF * SIGMA, RATE, 0.0, 0.0))
     led = beside_damping(system, OFF)
@@ -51,9 +57,7 @@ def test_parameters_bent_far_beside_a_cause_are_led_as_one_however_much_was_trie
     off: float, names: tuple[str, ...]
 ) -> None:
     system = Detuned(ring(off * SIGMA, RATE, 0.0, 0.0))
-    seen = look(system)
-    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
-    search = FollowedSearch(refiner, follow_ring(system, np.zeros(1), everything=True), 2)
+    search = search_of(system)
     search._keep(beside_damping(system, off))
     search._lead_freed()
     best = search._best
@@ -65,9 +69,7 @@ def test_parameters_bent_far_beside_a_cause_are_led_as_one_however_much_was_trie
 
 def test_each_of_what_came_as_close_as_the_best_is_led_alone() -> None:
     system = Detuned(ring(0.0, RATE, 0.0, 0.0))
-    seen = look(system)
-    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
-    search = FollowedSearch(refiner, follow_ring(system, np.zeros(1), everything=True), 2)
+    search = search_of(system)
     known = {one.name: one for one in system.candidates}
     both = freed(system, known, beside_damping(system, 3.0), "tone")
     assert both.state is not None
@@ -84,9 +86,7 @@ def test_each_of_what_came_as_close_as_the_best_is_led_alone() -> None:
 
 def test_what_stayed_far_behind_without_a_cause_needs_it_from_about_as_good_a_place() -> None:
     system = Detuned(ring(0.0, RATE, 0.0, 0.0))
-    seen = look(system)
-    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
-    search = FollowedSearch(refiner, follow_ring(system, np.zeros(1), everything=True), 2)
+    search = search_of(system)
     known = {one.name: one for one in system.candidates}
     start = freed(system, known, beside_damping(system, 3.0), "tone")
     assert start.state is not None
