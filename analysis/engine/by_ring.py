@@ -25,6 +25,7 @@ from analysis.engine.sharper import Sharper, Told, how_sharp, scales_of
 from analysis.engine.system import Array, Candidate, System
 from analysis.engine.until import Until
 from analysis.engine.way import STRAIN
+from analysis.engine.whole import whole_guesses
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
@@ -147,18 +148,21 @@ def by_ring(
     if enough is None and _tells_nothing(system, nothing):
         led = FollowedSearch(refiner, nothing, most_causes, following)
         return Found((), (), faint=False, led=Led(led, [], nothing))
-    about = faint(system, nothing, _free(system), following, near=start.seen)
+    asked = system.candidates if near else _free(system)
+    about = faint(system, nothing, asked, following, near=start.seen)
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
         other = _out_of_hollow(system, start.nuisance, nothing, faintly)
         if other is not None:
             nothing = other
-            about = faint(system, nothing, _free(system), following)
+            about = faint(system, nothing, system.candidates, following)
             screened, faintly = faint_search(about, refiner, refiner.candidates)
         sharper = _sharper(refiner, about) if enough is None else None
         if sharper is not None or not _promising(faintly):
             return Found(screened, faintly, faint=True, sharper=sharper)
         single = [Guess.of(one) for one in faintly if len(one.hypothesis.parts) == 1]
+        single += whole_guesses(system, refiner.candidates, about)
+        single.sort(key=lambda one: -one.log_score)
     else:
         screened, faintly = one_more(about, refiner), []
         single = [guessed(about, refiner, one) for one in screened]

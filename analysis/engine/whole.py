@@ -1,0 +1,95 @@
+"""What is there or not there as a whole, near the noise.
+
+Straight lines about the followed ring tell what a faint cause would do, and what parameters would
+do beside it. What is there as a whole, like two cells plugged into each other's channels, need not
+be faint where its trace is: parameters that stand where they hide it are far from where they are
+without, and do another thing beside it. So each form of it is simulated where straight lines put
+the parameters. Where it does as they say, they have told of it already; where it does something
+else, and is not lost, parameters are led to where they belong beside it.
+"""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from analysis.engine.all_samples import cost_of
+from analysis.engine.faint import Faint
+from analysis.engine.faint_search import nuisances_of
+from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
+from analysis.engine.hypothesis import Part
+from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_samples import Samples
+from analysis.engine.screen import Scored, Screen
+from analysis.engine.state import State
+from analysis.engine.system import Candidate, System
+from analysis.engine.way import LOST
+
+ELSEWHERE = 100.0
+"""Straight lines do not hold where the squared misfit is so much more, or less, than they say, and
+by as much as they say it changes at all."""
+
+FORMS = 4
+"""So many forms of a candidate are led at most, those of which straight lines say most."""
+
+
+def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Faint) -> list[Guess]:
+    """Candidates that are there or not, from where they leave least, the best first.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    candidates
+        By name.
+    found
+        Everything about where parameters alone came, what such candidates do there among it.
+    """
+    nothing = found.followed
+    screen = Screen(found.problem, candidates, found.terms)
+    alone = screen.null().log_score
+    guesses = []
+    for candidate in candidates.values():
+        if candidate.fixed:
+            led = [
+                follow_ring(system, one.nuisance, one.state, everything=True, near=True)
+                for one in _bent(system, screen, candidate, found)
+            ]
+            best = min((one for one in led if one.to_end), key=cost_of, default=None)
+            if best is not None and cost_of(best) < cost_of(nothing):
+                assert best.state is not None
+                rises = 0.5 * (cost_of(nothing) - cost_of(best))
+                guesses.append(Guess(best.state, best.nuisance, alone + rises))
+    return sorted(guesses, key=lambda one: -one.log_score)
+
+
+def _bent(system: System, screen: Screen, candidate: Candidate, found: Faint) -> list[Followed]:
+    """Forms of a candidate that do another thing than straight lines say, and are not lost."""
+    nothing = found.followed
+    samples = Samples(system, everything=True)
+    known = {candidate.name: candidate}
+    forms = list(_forms(screen, candidate))
+    starts = [Followed(nuisances_of(found, one), State.of(one, known)) for one in forms]
+    at_once = [Followed(nothing.nuisance, one.state) for one in starts]
+    bent = []
+    residuals = zip(
+        samples.residuals([one.point for one in at_once]),
+        samples.residuals([one.point for one in starts]),
+        strict=True,
+    )
+    base, alone = float(found.problem.base.mean()), screen.null().log_score
+    for scored, start, (here, there) in zip(forms, at_once, residuals, strict=True):
+        costs = 2.0 * base * (alone - scored.log_score)
+        nuisance = nuisances_of(found, scored)
+        really = float(there @ there + nuisance @ nuisance) - cost_of(nothing)
+        if float(np.mean(here**2)) < LOST and abs(really - costs) > ELSEWHERE + abs(costs):
+            bent.append((scored.log_score, start))
+    bent.sort(key=lambda one: -one[0])
+    return [start for _, start in bent[:FORMS]]
+
+
+def _forms(screen: Screen, candidate: Candidate) -> Iterator[Scored]:
+    """A candidate in each of its forms."""
+    terms = tuple(one.name for one in candidate.terms)
+    for shapes in candidate.variants():
+        yield screen.with_part(candidate.name, Part(terms, False, shapes))
