@@ -1,7 +1,7 @@
 """The library's effects as candidates: which of their numbers are fitted, and how."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -320,5 +320,33 @@ def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]], frame_hz: f
         "moment", "s", moments[0], 0.0, 1e5, tuple(moments),
         logarithmic=False, whole=True, finest=0.5 / frame_hz,
     )  # fmt: skip
-    return Candidate(effect.name, effect.title, effect.acts.side, (term,), (count, when), NUMBER,
-                     fixed=True)  # fmt: skip
+    again = tuple(
+        Shape(one.name, one.unit, one.default, one.low, one.high, logarithmic=False, whole=True)
+        for one in effect.parameters
+        if one.name.startswith("again_")
+    )
+    return Candidate(effect.name, effect.title, effect.acts.side, (term,), (count, when, *again),
+                     NUMBER, fixed=True)  # fmt: skip
+
+
+def as_lost(candidate: Candidate, lost_s: Sequence[float]) -> Candidate:
+    """Dropped frames, of which poses tell when they were lost: then, and at no other time.
+
+    Parameters
+    ----------
+    candidate
+        Dropped frames.
+    lost_s
+        When a frame was lost, s; not empty.
+    """
+    first = lost_s[0]
+    at_once = sum(1 for at in lost_s if at == first)
+    told = {"count": float(at_once), "moment": first}
+    told |= {f"again_{k}_s": at for k, at in enumerate(lost_s[at_once:], start=1)}
+    shapes = tuple(
+        replace(one, default=told[one.name], grid=(told[one.name],), finest=0.0)
+        if one.name in told
+        else one
+        for one in candidate.shapes
+    )
+    return replace(candidate, shapes=shapes)

@@ -68,6 +68,7 @@ def library_values(
             "frames": setting.shapes.get("count", 1.0),
             "at_s": at_s,
             "frame_hz": sighting.frame_hz,
+            **{key: at for key, at in setting.shapes.items() if key.startswith("again_")},
         }
     effect = library()[name]
     values: dict[str, float | tuple[float, ...]] = {

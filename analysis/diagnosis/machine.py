@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnosis.candidates import candidates
+from analysis.diagnosis.candidates import as_lost, candidates
 from analysis.diagnosis.fineness import finer_steps
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.library_values import library_values
+from analysis.diagnosis.lost_frames import lost_frames
 from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
@@ -117,6 +118,8 @@ class RecordedMachine:
             _as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
         )
         self._finer = [self._finer_steps(record) for record in range(len(recordings))]
+        if len(recordings) == 1:
+            self._candidates = self._as_frames_show()
 
     def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
         """The same machine, where less of its recordings counts.
@@ -301,6 +304,17 @@ class RecordedMachine:
     def _finer_steps(self, record: int) -> dict[str, float]:
         job = self.job(Point(np.zeros(len(self._known))), record)
         return finer_steps(self.recordings[record], job.task, job.sight)
+
+    def _as_frames_show(self) -> tuple[Candidate, ...]:
+        """Candidates, dropped frames just where poses show them; elsewhere, where they do not."""
+        (recording,) = self.recordings
+        job = self.job(Point(np.zeros(len(self._known))), 0)
+        simulation = simulate_task(job.task, output_rate_hz=recording.output_hz)
+        lost_s = lost_frames(recording, simulation, job.sight, self.sighting.frame_hz)
+        return tuple(
+            as_lost(one, lost_s) if lost_s and one.name == "frames_dropped" else one
+            for one in self._candidates
+        )
 
     def _peaks(self, shown_n: Array) -> list[float]:
         """Highest tension of each cable over all runs, as simulated or as recorded, N.

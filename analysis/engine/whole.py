@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from analysis.engine.all_samples import cost_of
+from analysis.engine.all_samples import WORTH_IT, cost_of
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of
 from analysis.engine.followed import Followed
@@ -22,7 +22,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.state import State
-from analysis.engine.system import Candidate, System
+from analysis.engine.system import Array, Candidate, System
 from analysis.engine.way import LOST
 
 ELSEWHERE = 100.0
@@ -56,7 +56,7 @@ def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Fa
                 for one in _bent(system, screen, candidate, found)
             ]
             best = min((one for one in led if one.to_end), key=cost_of, default=None)
-            if best is not None and cost_of(best) < cost_of(nothing):
+            if best is not None and cost_of(best) < cost_of(nothing) - WORTH_IT:
                 assert best.state is not None
                 rises = 0.5 * (cost_of(nothing) - cost_of(best))
                 guesses.append(Guess(best.state, best.nuisance, alone + rises))
@@ -67,25 +67,29 @@ def _bent(system: System, screen: Screen, candidate: Candidate, found: Faint) ->
     """Forms of a candidate that do another thing than straight lines say, and are not lost."""
     nothing = found.followed
     samples = Samples(system, everything=True)
-    known = {candidate.name: candidate}
     forms = list(_forms(screen, candidate))
-    starts = [Followed(nuisances_of(found, one), State.of(one, known)) for one in forms]
-    at_once = [Followed(nothing.nuisance, one.state) for one in starts]
-    bent = []
-    residuals = zip(
-        samples.residuals([one.point for one in at_once]),
-        samples.residuals([one.point for one in starts]),
-        strict=True,
+    starts = [State.of(one, {candidate.name: candidate}) for one in forms]
+    moved = [nuisances_of(found, one) for one in forms]
+    here = samples.residuals([Followed(nothing.nuisance, one).point for one in starts])
+    there = samples.residuals(
+        [Followed(nuisance, one).point for nuisance, one in zip(moved, starts, strict=True)]
     )
-    base, alone = float(found.problem.base.mean()), screen.null().log_score
-    for scored, start, (here, there) in zip(forms, at_once, residuals, strict=True):
-        costs = 2.0 * base * (alone - scored.log_score)
-        nuisance = nuisances_of(found, scored)
-        really = float(there @ there + nuisance @ nuisance) - cost_of(nothing)
-        if float(np.mean(here**2)) < LOST and abs(really - costs) > ELSEWHERE + abs(costs):
-            bent.append((scored.log_score, start))
+    bent = []
+    for v, scored in enumerate(forms):
+        said = _said(found, scored, found.terms[candidate.name, v][:, 0] * candidate.terms[0].step)
+        really = float(there[v] @ there[v]) - nothing.misfit
+        if float(np.mean(here[v] ** 2)) < LOST and abs(really - said) > ELSEWHERE + abs(said):
+            bent.append((scored.log_score, Followed(nothing.nuisance, starts[v])))
     bent.sort(key=lambda one: -one[0])
     return [start for _, start in bent[:FORMS]]
+
+
+def _said(found: Faint, scored: Scored, does: Array) -> float:
+    """By how much the squared misfit rises, by straight lines."""
+    problem = found.problem
+    left = problem.residual - does
+    left = left - problem.nuisance @ (scored.weighed.nuisance - problem.at)
+    return float(left @ left - problem.residual @ problem.residual)
 
 
 def _forms(screen: Screen, candidate: Candidate) -> Iterator[Scored]:
