@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from analysis.diagnosis.candidates import RUN_CODE
-from analysis.diagnosis.spelling import cables, sentence
+from analysis.diagnosis.spelling import cables, listed, sentence
 from analysis.diagnosis.told import Told
 
 
@@ -19,6 +19,23 @@ def phrase(cause: Mapping[str, Any]) -> str:
     say = PHRASES.get(cause["effect"])
     text = say(Told(cause)) if say else f"{cause['effect']} acts on {cause['where']['side']}"
     return sentence(text)
+
+
+COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
+"""In words, as a sentence begins."""
+
+
+def _lost_frames(c: Told) -> str:
+    """How many, and from when on: of those lost one by one, each."""
+    further = sorted(name for name in c.names if name.startswith("again_"))
+    again = [c.value(name) for name in further if c.value(name) > 0.0]
+    first = max(round(c.value("count")), 1)
+    count, times = first + len(again), [c.value("moment") % RUN_CODE, *again]
+    many = "frame of the video is" if count == 1 else "frames of the video are"
+    return (
+        f"{COUNTS[min(count, len(COUNTS) - 1)]} {many} missing without a mark, from "
+        f"{listed([f'{at:.2f}' for at in times])} s on"
+    )
 
 
 PHRASES: Mapping[str, Callable[[Told], str]] = {
@@ -198,13 +215,5 @@ PHRASES: Mapping[str, Callable[[Told], str]] = {
     "clock_drift": lambda c: (
         f"the camera's clock runs {c.signed('drift_ppm', 'fast', 'slow')} against the tensions'"
     ),
-    "frames_dropped": lambda c: (
-        f"{_frames(c)} of the video {'is' if c.value('count') <= 1.0 else 'are'} missing without a "
-        f"mark, from {c.value('moment') % RUN_CODE:.2f} s on"
-    ),
+    "frames_dropped": _lost_frames,
 }
-
-
-def _frames(c: Told) -> str:
-    count = max(round(c.value("count")), 1)
-    return {1: "one frame", 2: "two frames", 3: "three frames"}.get(count, f"{count} frames")

@@ -185,12 +185,17 @@ def parameters_of(cause: Cause, candidate: Candidate) -> dict[str, Any]:
         if shape.term:
             _begun(found, cause, shape)
             continue
+        if cause.name == "frames_dropped" and shape.name.startswith("again_") and not value:
+            continue
         sigma = cause.shape_sigmas.get(name, 0.0)
         found[name] = {
             "value": value,
             "sigma": sigma * value if shape.logarithmic else sigma,
             "unit": shape.unit,
         }
+    if cause.name == "frames_dropped":
+        further = sum(one.startswith("again_") for one in found)
+        found["frames"]["value"] = round(found["count"]["value"]) + further
     return found
 
 

@@ -36,6 +36,11 @@ class Told:
         """The verb's form for as many cables."""
         return one if len(self.cables) == 1 else many
 
+    @property
+    def names(self) -> list[str]:
+        """Its numbers."""
+        return list(self._parameters)
+
     def value(self, name: str) -> float:
         """The (mean) value; 0 where it is not told."""
         return float(self._parameters.get(name, {}).get("value", 0.0))

@@ -25,9 +25,9 @@ from analysis.engine.state import State
 from analysis.engine.system import Array, Candidate, System
 from analysis.engine.way import LOST
 
-ELSEWHERE = 100.0
+ELSEWHERE, SHARE = 100.0, 0.3
 """Straight lines do not hold where the squared misfit is so much more, or less, than they say, and
-by as much as they say it changes at all."""
+by this share of what they say it changes."""
 
 FORMS = 4
 """So many forms of a candidate are led at most, those of which straight lines say most."""
@@ -78,7 +78,9 @@ def _bent(system: System, screen: Screen, candidate: Candidate, found: Faint) ->
     for v, scored in enumerate(forms):
         said = _said(found, scored, found.terms[candidate.name, v][:, 0] * candidate.terms[0].step)
         really = float(there[v] @ there[v]) - nothing.misfit
-        if float(np.mean(here[v] ** 2)) < LOST and abs(really - said) > ELSEWHERE + abs(said):
+        if float(np.mean(here[v] ** 2)) < LOST and abs(really - said) > ELSEWHERE + SHARE * abs(
+            said
+        ):
             bent.append((scored.log_score, Followed(nothing.nuisance, starts[v])))
     bent.sort(key=lambda one: -one[0])
     return [start for _, start in bent[:FORMS]]

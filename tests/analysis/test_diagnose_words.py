@@ -53,6 +53,16 @@ def test_every_effect_has_a_sentence_with_its_cables_and_numbers(name: str) -> N
         assert "±" in said
 
 
+def test_frames_that_were_lost_one_by_one_are_told_one_by_one() -> None:
+    one = caused("frames_dropped")
+    one["parameters"]["count"]["value"] = 1.0
+    for k, at_s in enumerate((4.25, 6.5, 0.0, 0.0, 0.0), start=1):
+        one["parameters"][f"again_{k}_s"]["value"] = at_s
+    said = phrase(one)
+    assert said.startswith("Three frames of the video are missing")
+    assert "from 3.25, 4.25 and 6.50 s on" in said
+
+
 def test_there_is_no_sentence_for_what_is_no_effect() -> None:
     assert set(PHRASES) == set(SHORT) == set(library())
 

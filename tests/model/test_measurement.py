@@ -87,6 +87,11 @@ CAMERAS: list[tuple[str, dict[str, float], Callable[[np.ndarray], np.ndarray]]] 
         {"frames": 2.0, "at_s": 3.0, "frame_hz": 16.0},
         lambda t: pose_at(np.where(t < 3.0, t, t + 0.125)),
     ),
+    (
+        "frames_dropped",
+        {"frames": 1.0, "at_s": 3.0, "frame_hz": 16.0, "again_1_s": 4.0, "again_2_s": 0.0},
+        lambda t: pose_at(t + 0.0625 * (t >= 3.0) + 0.0625 * (t >= 4.0)),
+    ),
 ]
 
 
