@@ -22,9 +22,10 @@ REACH, NARROWEST = 4.0, 0.001
 """Where more than this is left of a sample in the next window, as where a motion begins, a nearer
 one is led through first, down to this share of the time."""
 
-AT_ONCE = 1.5
-"""A longer stretch is gone over at once only where no more than this is left of a sample: a faint
-ring half a turn out of phase leaves little more than noise, and so does a wrong turn after it."""
+AT_ONCE, IN_PHASE = 1.15, 1.5
+"""A longer stretch is gone over at once only where no more than the first is left of a sample: a
+faint ring half a turn out of phase leaves little more than noise, and so does a wrong turn after
+it. Where more than the second is left, what was led is not nearly there."""
 
 GROWS = 2.0
 """What a law that is not exact leaves, it leaves of a longer stretch as well: no more than so many
@@ -122,7 +123,10 @@ class Way:
             Share up to which parameters were led.
         """
         self._settled = False
-        at_once, share = self.in_phase(passed), next(one for one in WINDOWS if one > passed)
+        at_once, share = (
+            self.in_phase(passed, AT_ONCE),
+            next(one for one in WINDOWS if one > passed),
+        )
         if self.left(share) < REACH:
             whole = self.here
             if self._seen < 1.0:
@@ -173,18 +177,20 @@ class Way:
         count = int((self._samples.shares <= share).sum())
         return 1.0 + LEAVES * float(np.sqrt(2.0 / max(count, 1)))
 
-    def in_phase(self, passed: float) -> float:
+    def in_phase(self, passed: float, exact: float = IN_PHASE) -> float:
         """What may be left of a sample of a longer stretch where the ring is in phase there.
 
         Parameters
         ----------
         passed
             Share of the time up to which numbers were led.
+        exact
+            Where no law that is on leaves more than noise up to there.
         """
-        exact = self.at.state is None or passed == 0.0
-        if exact or self.left(passed) <= self.allowed(passed):
-            return AT_ONCE
-        return max(AT_ONCE, GROWS * self.left(passed))
+        nothing = self.at.state is None or passed == 0.0
+        if nothing or self.left(passed) <= self.allowed(passed):
+            return exact
+        return max(exact, GROWS * self.left(passed))
 
     def step(self, share: float, lost: float = LOST, best: float = np.inf) -> bool:
         """One Gauss-Newton step over the samples up to a share of the time, if there is one.
