@@ -12,7 +12,7 @@ from analysis.engine.guess import Guess
 from analysis.engine.leader import ARRIVED, EFFORT, POOR
 from analysis.engine.more_leader import MoreLeader
 from analysis.engine.survey import sticks, surveyed
-from analysis.engine.way import AT_ONCE
+from analysis.engine.way import IN_PHASE
 
 TOLD, AS_GOOD = 2, 4.0
 """So many of what lines tell are led on from the first stretch, where they leave no more than so
@@ -64,7 +64,7 @@ class ToldLeader(MoreLeader):
             return begun
         still = self._nothing.about or self._nothing
         found = surveyed(self._samples, stuck[0], still.nuisance)
-        self._slips = found.left < AT_ONCE
+        self._slips = found.left < IN_PHASE
         return sorted([found, *begun], key=lambda one: one.left)
 
     def _starts(self, guesses: Sequence[Guess]) -> Iterator[Followed]:
