@@ -77,6 +77,8 @@ def by_lines(
         return Found(singles, ranked, faint=False)
     if not led.search.arrived:
         led.search.follow(_to_follow(refiner, null, (), _guesses(ranked)), alone, seen=True)
+        if ranked[0].log_score > null.log_score + SEEN:
+            led.search.follow_beside(ranked[0].hypothesis.names)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
 

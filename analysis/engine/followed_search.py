@@ -186,6 +186,24 @@ class FollowedSearch(ToldLeader):
                 self._lead(one.nuisance, one.state, near=self._near)
         self._lead_beside()
 
+    def follow_beside(self, names: tuple[str, ...]) -> None:
+        """Ask the ring what there is beside what lines are sure of, where that was lost.
+
+        What is beside it may show in the ring alone: there lines tell nothing of it. Where
+        parameters are bent they made up for it, and the ring tells that instead.
+
+        Parameters
+        ----------
+        names
+            Of what lines are sure of.
+        """
+        lost = [one for one in self._led if one.names == names and not one.is_bent]
+        if self.arrived or not lost:
+            return
+        self._most = max(self._most, self._effort + EFFORT)
+        if self._one_more(min(lost, key=farthest_first)):
+            self._lead_beside()
+
     def _lead_beside(self) -> None:
         """From the best on: rivals, one cause more, one less."""
         for _ in range(self._most_causes):

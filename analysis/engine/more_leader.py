@@ -54,9 +54,10 @@ class MoreLeader(RivalLeader):
         """Whether what is on explains to the noise."""
         return led.state is not None and led.to_end and led.left < noise_of(self._system)
 
-    def _one_more(self) -> bool:
-        """Try one cause more beside the best; whether that leads farther."""
-        best, refiner = self._best, self._refiner
+    def _one_more(self, beside: Followed | None = None) -> bool:
+        """Try one cause more beside the best, or beside another; whether that leads farther."""
+        before, refiner = self._best, self._refiner
+        best = before if beside is None else beside
         # However much was tried: beside what explains to the noise little is to be led, and beside
         # what leads to the end one cause more is asked for once.
         first = best.to_end and not self._asked_more
@@ -87,7 +88,8 @@ class MoreLeader(RivalLeader):
             promising = laws[0].log_score > next(iter(promised.values()))[0].log_score - FAR_BEHIND
             if promising and laws[0].hypothesis.names not in known:
                 tried[kind] = lead(laws[0])
-        if self._best is best or (best.to_end and cost_of(self._best) > cost_of(best) - WORTH_IT):
+        gains = cost_of(before) - cost_of(self._best)
+        if not tried or self._best is before or (before.to_end and gains < WORTH_IT):
             return False
         # One law was led that far; which of its kind it is, is another question.
         kind = min(tried, key=lambda one: farthest_first(tried[one]))

@@ -15,7 +15,7 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.system import Candidate, Nuisance, Term
-from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring
+from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring, state_of
 
 TONE = Candidate("tone", "tone", "parameter", (Term("share", "share", "1", "", -1.0, 1.0, SIGMA),))
 
@@ -72,3 +72,26 @@ def test_where_lines_tell_nothing_what_the_first_moments_of_a_motion_tell_is_led
     assert found.faint
     assert found.fitted[0].hypothesis.names == ("damping",)
     assert found.fitted[0].values["damping", "rate"] == pytest.approx(0.2, abs=0.01)
+
+
+def test_beside_what_lines_are_sure_of_the_ring_is_asked_where_that_was_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Unless parameters were bent for it, and not where something came to the end."""
+    system = Tuned(ring(0.0, 0.2, 0.0, 0.0))
+    refiner = Refiner(system, *look(system))
+    still = follow_ring(system, np.zeros(1), everything=True, most=0.0)
+    search = FollowedSearch(refiner, still, 2)
+    asked: list[Followed | None] = []
+    monkeypatch.setattr(search, "_one_more", lambda beside=None: asked.append(beside))
+    near = Followed(np.zeros(1), state_of(DAMPING, 0.1), share=0.4, costs={0.4: 500.0})
+    bent = replace(near, nuisance=np.array([7.0]), costs={0.5: 500.0})
+    for one in (near, bent):
+        search._keep(one)
+    search.follow_beside(("step",))
+    assert asked == []
+    search.follow_beside(("damping",))
+    assert asked == [near]
+    search._keep(replace(near, share=1.0, misfit=1000.0, left=1.0, costs={1.0: 1000.0}))
+    search.follow_beside(("damping",))
+    assert asked == [near]
