@@ -1,7 +1,7 @@
 """The library's effects as candidates: which of their numbers are fitted, and how."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -327,26 +327,3 @@ def _dropped(effect: Effect, times_s: Sequence[tuple[float, float]], frame_hz: f
     )
     return Candidate(effect.name, effect.title, effect.acts.side, (term,), (count, when, *again),
                      NUMBER, fixed=True)  # fmt: skip
-
-
-def as_lost(candidate: Candidate, lost_s: Sequence[float]) -> Candidate:
-    """Dropped frames, of which poses tell when they were lost: then, and at no other time.
-
-    Parameters
-    ----------
-    candidate
-        Dropped frames.
-    lost_s
-        When a frame was lost, s; not empty.
-    """
-    first = lost_s[0]
-    at_once = sum(1 for at in lost_s if at == first)
-    told = {"count": float(at_once), "moment": first}
-    told |= {f"again_{k}_s": at for k, at in enumerate(lost_s[at_once:], start=1)}
-    shapes = tuple(
-        replace(one, default=told[one.name], grid=(told[one.name],), finest=0.0)
-        if one.name in told
-        else one
-        for one in candidate.shapes
-    )
-    return replace(candidate, shapes=shapes)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnosis.candidates import as_lost, candidates
+from analysis.diagnosis.as_recorded import as_clipped, as_lost, as_seen
+from analysis.diagnosis.candidates import candidates
 from analysis.diagnosis.fineness import finer_steps
 from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.library_values import library_values
@@ -29,10 +30,6 @@ from model.simulator import run as simulate_task
 Array = NDArray[np.float64]
 Key = tuple[object, ...]
 """Equal where the same is simulated."""
-
-HANGS_NOWHERE = 0.5
-"""Of how likely slack is otherwise: where no tension comes to zero, a cable that is too long is
-rather one that was tightened less: both move alike."""
 
 LANES_FROM = 8
 """Fewer tasks than this are faster one by one."""
@@ -100,7 +97,7 @@ class RecordedMachine:
         posed = any(one.has_pose for one in recordings)
         slack = sorted({cable for one in recordings for cable in one.hanging})
         self._candidates = tuple(
-            _as_seen(one, slack)
+            as_seen(one, slack)
             for one in candidates(effects, times, self.sighting.frame_hz)
             if posed or one.side not in ("camera", "clock")
         )
@@ -115,7 +112,7 @@ class RecordedMachine:
         shown_n = self._shown()
         self.peaks_n = self._peaks(shown_n)
         self._candidates = tuple(
-            _as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
+            as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
         )
         self._finer = [self._finer_steps(record) for record in range(len(recordings))]
         if len(recordings) == 1:
@@ -339,25 +336,6 @@ class RecordedMachine:
                 cables = [int(name.removeprefix("tension ")) - 1 for name in bundle.names]
                 highest[cables] = np.maximum(highest[cables], np.nanmax(bundle.value, axis=0))
         return highest
-
-
-def _as_seen(candidate: Candidate, slack: Sequence[int]) -> Candidate:
-    """A candidate with what samples show of it: cables that hang slack."""
-    if candidate.name != "cable_slack":
-        return candidate
-    shown = tuple(f"slack_m@{cable}" for cable in slack)
-    return replace(candidate, shown=shown, prior=1.0 if slack else HANGS_NOWHERE)
-
-
-def _as_clipped(candidate: Candidate, above_n: Array) -> Candidate:
-    """Clipping cells, each looked for where it shows no more: so far below what is simulated."""
-    if candidate.name != "cell_saturation":
-        return candidate
-    terms = tuple(
-        replace(one, step=float(np.clip(above, one.step, one.high)) if above < np.inf else one.step)
-        for one, above in zip(candidate.terms, above_n, strict=True)
-    )
-    return replace(candidate, terms=terms)
 
 
 def _cut(recording: Recording, upto: float) -> RampedSine | None:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from recorded_by import STILL, by_model
 
-from analysis.diagnosis.candidates import as_lost, candidates
+from analysis.diagnosis.as_recorded import as_lost
+from analysis.diagnosis.candidates import candidates
 from analysis.diagnosis.lost_frames import lost_frames
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
