@@ -26,9 +26,6 @@ FAR = 25.0
 CLEAR = 60.0
 """A frame is lost where poses after it are so much less far off, in the same units, summed."""
 
-BEFORE_S = -1.0
-"""Before all of the simulation."""
-
 
 def lost_frames(
     recording: Recording, simulation: Simulation, sight: Sight, frame_hz: float
@@ -58,9 +55,9 @@ def lost_frames(
     )
     usual = float(np.median(off.min(axis=0)))
     lost = _staircase(np.minimum(off / max(usual, 1.0), FAR))
-    steps = np.diff(lost, prepend=0)
-    middle = np.concatenate([[BEFORE_S], 0.5 * (stamps[1:] + stamps[:-1])])
-    return tuple(float(at) for at, step in zip(middle, steps, strict=True) for _ in range(step))
+    steps = np.diff(lost)
+    between = 0.5 * (stamps[1:] + stamps[:-1])
+    return tuple(float(at) for at, step in zip(between, steps, strict=True) for _ in range(step))
 
 
 def _all_late(count: int, frame_hz: float) -> tuple[ActiveEffect, ...]:
@@ -78,10 +75,12 @@ def _off(recording: Recording, simulation: Simulation, sight: Sight) -> Array:
 def _staircase(off: Array) -> np.ndarray:
     """How many frames were lost before each, shape (frames,), from what each number of them costs.
 
-    Never fewer than before; each costs `CLEAR`. The best of all such courses (Viterbi).
+    None before the first, never fewer than before; each costs `CLEAR`. The best of all such courses
+    (Viterbi).
     """
     count, frames = off.shape
-    costs = off[:, 0] + CLEAR * np.arange(count)
+    costs = np.full(count, np.inf)
+    costs[0] = off[0, 0]
     came = np.zeros((frames, count), dtype=np.int64)
     for k in range(1, frames):
         best = np.full(count, np.inf)

@@ -110,13 +110,14 @@ class RecordedMachine:
         """Simulations run so far."""
         self.peaks_n = [1e3] * 8
         shown_n = self._shown()
-        self.peaks_n = self._peaks(shown_n)
+        nominal = self._nominal()
+        self.peaks_n = _peaks(nominal, shown_n)
         self._candidates = tuple(
             as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
         )
         self._finer = [self._finer_steps(record) for record in range(len(recordings))]
         if len(recordings) == 1:
-            self._candidates = self._as_frames_show()
+            self._candidates = self._as_frames_show(nominal[0])
 
     def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
         """The same machine, where less of its recordings counts.
@@ -302,31 +303,24 @@ class RecordedMachine:
         job = self.job(Point(np.zeros(len(self._known))), record)
         return finer_steps(self.recordings[record], job.task, job.sight)
 
-    def _as_frames_show(self) -> tuple[Candidate, ...]:
+    def _nominal(self) -> list[Simulation]:
+        """Each run as the rig file has the machine."""
+        nominal = Point(np.zeros(len(self._known)))
+        return [
+            simulate_task(self.job(nominal, record).task, output_rate_hz=one.output_hz)
+            for record, one in enumerate(self.recordings)
+        ]
+
+    def _as_frames_show(self, nominal: Simulation) -> tuple[Candidate, ...]:
         """Candidates, dropped frames just where poses show them; elsewhere, where they do not."""
-        (recording,) = self.recordings
-        job = self.job(Point(np.zeros(len(self._known))), 0)
-        simulation = simulate_task(job.task, output_rate_hz=recording.output_hz)
-        lost_s = lost_frames(recording, simulation, job.sight, self.sighting.frame_hz)
+        if all(one.name != "frames_dropped" for one in self._candidates):
+            return self._candidates
+        sight = self.job(Point(np.zeros(len(self._known))), 0).sight
+        lost_s = lost_frames(self.recordings[0], nominal, sight, self.sighting.frame_hz)
         return tuple(
             as_lost(one, lost_s) if lost_s and one.name == "frames_dropped" else one
             for one in self._candidates
         )
-
-    def _peaks(self, shown_n: Array) -> list[float]:
-        """Highest tension of each cable over all runs, as simulated or as recorded, N.
-
-        A cell that clips does so below what the rig file has, or below what it was seen to show.
-        """
-        nominal = Point(np.zeros(len(self._known)))
-        jobs = [self.job(nominal, record) for record in range(len(self.recordings))]
-        rates_hz = [one.output_hz for one in self.recordings]
-        runs = [
-            simulate_task(job.task, output_rate_hz=rate_hz)
-            for job, rate_hz in zip(jobs, rates_hz, strict=True)
-        ]
-        highest = np.max([run.tension_n.max(axis=0) for run in runs], axis=0)
-        return [float(one) for one in np.maximum(highest, shown_n)]
 
     def _shown(self) -> Array:
         """Highest tension that each cell showed in any run, N; none: less than anything."""
@@ -336,6 +330,15 @@ class RecordedMachine:
                 cables = [int(name.removeprefix("tension ")) - 1 for name in bundle.names]
                 highest[cables] = np.maximum(highest[cables], np.nanmax(bundle.value, axis=0))
         return highest
+
+
+def _peaks(nominal: Sequence[Simulation], shown_n: Array) -> list[float]:
+    """Highest tension of each cable over all runs, as simulated or as recorded, N.
+
+    A cell that clips does so below what the rig file has, or below what it was seen to show.
+    """
+    highest = np.max([run.tension_n.max(axis=0) for run in nominal], axis=0)
+    return [float(one) for one in np.maximum(highest, shown_n)]
 
 
 def _cut(recording: Recording, upto: float) -> RampedSine | None:
