@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
-from analysis.engine.faint import FORMS, UNEXPLAINED
+from analysis.engine.faint import FORMS, UNEXPLAINED, inexact
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
@@ -258,7 +258,7 @@ def forms_of(
     found = []
     for size, weight in zip(FORM_SIZES, FORM_WEIGHTS, strict=True):
         off = min((size * form) ** 2 * explained, hidden) + unexplained
-        noise = 1.0 + off / FORMS
+        noise = 1.0 + off / FORMS + inexact(count)
         unlikely = 0.5 * FORMS * np.log(noise) + 0.5 * beyond / noise
         found.append((float(np.log(weight) - unlikely), float(noise)))
     return found

@@ -35,7 +35,7 @@ FLAT = 0.3
 """Where the cost rises by less than this share of what a single valley would have it rise by, there
 may be a lower one;"""
 
-MOST, RIDGES = 2, 3
+MOST, RIDGES = 2, 6
 """so many are tried, those where it rises least, and so many ridges are gone over."""
 
 WORTH_IT = 10.0

@@ -35,6 +35,10 @@ FORMS = 20
 """An error of form lies in few directions, and in which is not known: in each it may be as large as
 if there were so many."""
 
+INEXACT = 0.015
+"""Two simulators of the same laws differ by as much, rms, in units of a sample's noise: by nothing
+in a thousand samples, and in fifty thousand by more than a cause has to explain."""
+
 CLOSE = 0.05
 """Where two simulations differ by no more than this, squared, of a sample's noise, on average, what
 a candidate does beside the one is what it does beside the other."""
@@ -240,7 +244,7 @@ def _compressed(
     -------
     Array, Array, float
         Shapes (f, k) and (f,), and the variance of noise there: more than one where the residual
-        holds what nothing spans.
+        holds what nothing spans, and where samples are many.
     """
     norms = np.linalg.norm(changes, axis=1)
     norms[norms == 0.0] = 1.0
@@ -252,7 +256,19 @@ def _compressed(
     free = max(len(residual) - len(roots), 1)
     left = float(residual @ residual - residual_inside @ residual_inside) / free
     spread = UNEXPLAINED * max(left - allowed, 0.0) * len(residual) / len(roots)
-    return inside, residual_inside, max(min(left, allowed), 1.0) + spread
+    known = max(min(left, allowed), 1.0) + inexact(len(residual))
+    return inside, residual_inside, known + spread
+
+
+def inexact(count: int) -> float:
+    """What a simulator's own error adds to the variance along each direction that is looked at.
+
+    Parameters
+    ----------
+    count
+        Samples.
+    """
+    return INEXACT**2 * count / FORMS
 
 
 def _labels(size: int) -> Labels:

@@ -17,11 +17,12 @@ from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.system import Array, Ringing, System
 
-SOUGHT = 0.06
+SOUGHT = 0.1
 """A ring is sought this near a tone, as a share of it, and within what is known of it."""
 
 KNOWN = 3.0
-"""Standard deviations of a tone, by what is known of numbers beforehand, within which it is."""
+"""A tone is within so many standard deviations, by what is known of numbers beforehand, of where it
+is likeliest by that."""
 
 APART = 0.75
 """What is nearer to the tone than this is its own ring, in lines of the longest recording."""
@@ -47,6 +48,13 @@ class _Ring(NamedTuple):
     loud: float
 
 
+class _Beforehand(NamedTuple):
+    """Tones, and how far from there they may be, in Hz, by what was known before the samples."""
+
+    tones_hz: Array
+    reach_hz: Array
+
+
 def in_tune(system: System, led: Followed, known: Known) -> Iterator[Followed]:
     """Places where a tone has the frequency of a ring that is left, the loudest first.
 
@@ -65,26 +73,32 @@ def in_tune(system: System, led: Followed, known: Known) -> Iterator[Followed]:
     spread: Array = np.asarray(np.linalg.pinv(known.information, hermitian=True), dtype=float)
     moves = tones_by_number(system, led, length_s)
     turns = np.sqrt(np.maximum(np.einsum("jk,kl,jl->j", moves, spread, moves), 0.0))
-    sigmas_hz = turns / (2.0 * np.pi * length_s)
-    for ring in _rings(Samples(system, everything=True), led, tones, sigmas_hz, length_s)[:MOST]:
+    reach_hz = KNOWN * turns / (2.0 * np.pi * length_s)
+    about = _Beforehand(system.tones_hz(_beforehand(led, known).point), reach_hz)
+    for ring in _rings(Samples(system, everything=True), led, tones, about, length_s)[:MOST]:
         yield _tuned(system, led, spread, ring, length_s)
 
 
+def _beforehand(led: Followed, known: Known) -> Followed:
+    """Where numbers were likeliest before the samples; what nothing was known of stays."""
+    off = np.where(np.diag(known.information) > 0.0, known.at - led.numbers, 0.0)
+    return led.moved(off, 1.0)
+
+
 def _rings(
-    samples: Samples, led: Followed, tones: Array, sigmas_hz: Array, length_s: float
+    samples: Samples, led: Followed, tones: Array, about: _Beforehand, length_s: float
 ) -> list[_Ring]:
     """What rings beside a tone, within what is known of it beforehand, the loudest of each."""
     (residual,) = samples.residuals([led.point])
     line_hz = 1.0 / length_s
     found = []
-    for j, (tone, sigma_hz) in enumerate(zip(tones, sigmas_hz, strict=True)):
-        reach = min(SOUGHT * tone, KNOWN * sigma_hz)
-        count = int(4.0 * reach / line_hz)
+    for j, tone in enumerate(tones):
+        count = int(4.0 * SOUGHT * tone / line_hz)
         offsets = 0.25 * line_hz * np.arange(-count, count + 1)
         hertz = tone + offsets[np.abs(offsets) > APART * line_hz]
         # Nearer to another tone it is that one's.
         own = np.abs(hertz[:, None] - tones[None, :]).argmin(axis=1) == j
-        hertz = hertz[own]
+        hertz = hertz[own & (np.abs(hertz - about.tones_hz[j]) <= about.reach_hz[j])]
         if len(hertz):
             loud = _loudness(samples, residual, hertz)
             best = int(np.argmax(loud))

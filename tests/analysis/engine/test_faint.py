@@ -44,6 +44,19 @@ def test_noise_that_is_known_from_few_samples_is_as_large_as_it_shows_to_be() ->
     assert beyond > 3.0 * unsure, "what noise does not allow may lie in any direction"
 
 
+def test_however_many_samples_there_are_what_is_a_fiftieth_of_their_noise_tells_little() -> None:
+    told = {}
+    for count in (2_000, 200_000):
+        generator = np.random.default_rng(6)
+        changes = np.concatenate([generator.normal(size=(5, count)), np.ones((1, count))])
+        missed = 0.02 * changes[-1]
+        _, seen, noise = _compressed(changes, generator.normal(size=count) + missed, 1.1)
+        told[count] = count * 0.02**2 / noise
+        assert float(seen @ seen) == pytest.approx(count * 0.02**2, abs=30.0)
+    assert told[2_000] == pytest.approx(0.8, rel=0.2), "few samples say what they say"
+    assert told[200_000] < 30.0, "many, no more than laws are exact"
+
+
 @pytest.mark.parametrize(("tone", "anew"), [(1e-4, False), (0.05, True)])
 def test_what_candidates_do_is_not_simulated_again_beside_the_same_simulation(
     tone: float, anew: bool

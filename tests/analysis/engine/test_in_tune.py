@@ -37,9 +37,9 @@ class Duet:
     nuisances: Sequence[Nuisance] = (Nuisance("a", SHARE, "1"), Nuisance("b", SHARE, "1"))
     candidates: Sequence[Candidate] = ()
 
-    def __init__(self, energies: Sequence[float] = (2e5, 300.0)) -> None:
+    def __init__(self, energies: Sequence[float] = (2e5, 300.0), truth: Array = TRUTH) -> None:
         self.heights = np.sqrt(2.0 * np.array(energies) * NOISE**2 / len(T_S))
-        truth = self._one(TRUTH)
+        truth = self._one(truth)
         noisy = truth + NOISE * np.random.default_rng(3).standard_normal(truth.shape)
         self.bundles = (
             Bundle(
@@ -83,6 +83,18 @@ def test_numbers_are_found_that_bring_one_tone_to_the_ring_that_is_left() -> Non
     assert found[0] == pytest.approx(before[0], abs=1e-4)
     assert abs(found[1] - right[1]) * SECONDS < 0.3
     assert valley(system, led).led.nuisance == pytest.approx(TRUTH, abs=0.02)
+
+
+def test_a_tone_is_looked_for_wherever_it_may_be_by_what_was_known_beforehand() -> None:
+    truth = np.linalg.solve(MIXED, np.array([0.1, -2.5]))
+    system = Duet(truth=truth)
+    start = np.linalg.solve(MIXED, np.array([0.1, 2.5]))
+    led = follow_ring(system, start, everything=True, near=True)
+    right = system.tones_hz(Point(truth))
+    # Twice as far from there as from where it was likeliest.
+    assert abs(system.tones_hz(led.point)[1] - right[1]) > 4.0 * SHARE * TONES_HZ[1]
+    (there,) = in_tune(system, led, Known.priors(led))
+    assert abs(system.tones_hz(there.point)[1] - right[1]) * SECONDS < 0.3
 
 
 def test_what_is_in_tune_leaves_no_ring_to_follow() -> None:
