@@ -8,6 +8,7 @@ however narrow each valley is.
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
@@ -103,6 +104,29 @@ def valley(
     return Valley(led, information)
 
 
+def tuned(system: System, led: Followed) -> Followed:
+    """Where the ring was followed to, or where a tone that is out of tune there is in tune.
+
+    Turns that are counted take all differences; a ring that is left takes one simulation to be
+    seen, and so can be asked of every hypothesis.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    led
+        Where to, over all of the time.
+    """
+    known, effort = Known.priors(led), led.effort
+    for _ in range(RIDGES):
+        found = _beyond(system, led, known, in_tune(system, led, known))
+        if found is None:
+            break
+        effort += found.effort
+        led = replace(found, effort=effort)
+    return led
+
+
 def information_of(system: System, led: Followed) -> Array:
     """What samples tell of free numbers about where they were led to, shape (numbers, numbers)."""
     if led.information is not None:
@@ -123,11 +147,13 @@ def _beyond(
     system: System, led: Followed, known: Known, starts: Iterable[Followed]
 ) -> Followed | None:
     """The first of some valleys that is lower; None: none is."""
+    here = _cost(led, known)
     for start in starts:
         found = follow_ring(
-            system, start.nuisance, start.state, everything=True, near=True, known=known
-        )
-        if _cost(found, known) < _cost(led, known) - WORTH_IT:
+            system, start.nuisance, start.state, everything=True, near=True, known=known,
+            ahead={1.0: here},
+        )  # fmt: skip
+        if _cost(found, known) < here - WORTH_IT:
             return found
     return None
 

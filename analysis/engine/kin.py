@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.engine.all_samples import cost_of, noise_of
+from analysis.engine.all_samples import cost_of, farthest_first, noise_of
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.instead import begun_instead
@@ -154,6 +154,8 @@ def kin_left(
 ) -> Iterator[tuple[str, str, tuple[str, ...]]]:
     """Other laws for those of a hypothesis that have not come to the end.
 
+    First those that led farthest in any hypothesis: beside another cause they are the likeliest.
+
     Parameters
     ----------
     best
@@ -177,12 +179,20 @@ def kin_left(
         and one.misfit < HOPELESS * best.misfit
         and not one.is_bent
     }
-    for known in best.names:
-        for name, one in candidates.items():
-            names = tuple(sorted({*best.names, name} - {known}))
-            kin = one.family and one.family == candidates[known].family
-            if kin and name not in best.names and names not in done:
-                yield known, name, names
+
+    def farthest(kin: tuple[str, str]) -> tuple[float, float]:
+        return min((farthest_first(one) for one in led if kin[1] in one.names), default=(0.0, 0.0))
+
+    every = (
+        (known, name)
+        for known in best.names
+        for name, one in candidates.items()
+        if one.family and one.family == candidates[known].family and name not in best.names
+    )
+    for known, name in sorted(every, key=farthest):
+        names = tuple(sorted({*best.names, name} - {known}))
+        if names not in done:
+            yield known, name, names
 
 
 def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed:

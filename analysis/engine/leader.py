@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from analysis.engine.all_samples import (
     all_samples_say,
+    cost_of,
     farthest_first,
     led_through,
     misfit_at,
@@ -12,6 +13,7 @@ from analysis.engine.all_samples import (
     nothing_again,
     shown_the_way,
 )
+from analysis.engine.cycles import tuned
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import others_beside
 from analysis.engine.fitted import Fitted
@@ -20,7 +22,7 @@ from analysis.engine.guess import Guess
 from analysis.engine.part import has_several, records_of
 from analysis.engine.places import is_placed
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import GOES_ON, follow_ring
+from analysis.engine.ring_fit import BEHIND, GOES_ON, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
@@ -153,6 +155,10 @@ class Leader:
         self._keep(found)
 
     def _keep(self, found: Followed) -> None:
+        contends = cost_of(found) < cost_of(self._best) + BEHIND
+        if found.to_end and contends and not has_several(self._system):
+            # Of several recordings each is led over its own ridges.
+            found = tuned(self._system, found)
         self._effort += found.effort
         if farthest_first(found) > farthest_first(self._best):
             found = replace(found, lends=None)

@@ -21,7 +21,7 @@ from analysis.engine.leader import Leader
 from analysis.engine.moved import freed
 from analysis.engine.part import has_several
 from analysis.engine.places import is_placed, placed_again
-from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.ring_fit import BEHIND, FAINT, follow_ring
 from analysis.engine.state import State
 from analysis.engine.way import HOPELESS
 
@@ -70,6 +70,10 @@ class RivalLeader(Leader):
             found = lead_instead(self._samples, best, known, name)
             if found is not None:
                 self._keep(found)
+                if cost_of(self._best) < cost_of(best) - BEHIND:
+                    # What is that much closer has kin of its own, and is the better place to begin.
+                    self._lead_kin(self._best)
+                    return
 
     def _lead_alike(self, others: Sequence[Guess]) -> None:
         """Laws of the best's kind in all places alike, where it leaves more than noise."""

@@ -58,6 +58,10 @@ not led on with fresh ones."""
 CATCHES_UP = 0.1
 """Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
 
+WORTH_ALL_ANEW = 30.0
+"""What steps have brought since what nuisances do was simulated: along a valley that turns, that
+may be another thing by now, however little of what is left has changed."""
+
 STRAIGHT = 0.5
 """A step that brings less than this of what it promises, or as much more, has left where
 differences hold: what everything does is simulated anew."""
@@ -108,7 +112,7 @@ class Way:
         self._lent, self._serves = lent, False
         self._kept: Array | None = None
         self._told: Array | None = None
-        self._renewed = 0
+        self._renewed, self._won = 0, 0.0
 
     def hold(self, known: Known) -> None:
         """From here on something else is known of free numbers."""
@@ -217,16 +221,18 @@ class Way:
             if self._settled or hopeless:
                 return False
             self._differences()
-        fresh = self._fresh
+        worn = self._won > WORTH_ALL_ANEW
+        fresh = self._fresh and not worn
         fell = self._step(inside, best)
         self._settled |= fresh and fell < WORTH_ANEW
         if fell > 0.0:
             return True
-        told = self._is_same and self.at.state is None
+        told = self._is_same and self.at.state is None and not worn
         if fresh or self._settled or self._serves or told:
             return False
         assert self._columns is not None
-        self._kept = self._columns[: len(self.at.nuisance)] if self._is_same else None
+        same = self._is_same and not worn
+        self._kept = self._columns[: len(self.at.nuisance)] if same else None
         self._columns = None
         return self.step(share, lost, best)
 
@@ -246,7 +252,7 @@ class Way:
             (self._kept, self._told), self._lent = self._lent, None
         columns = np.zeros((0, len(self.here))) if self._kept is None else self._kept
         if len(columns) == 0:
-            self._told, self._renewed = self.here, 0
+            self._told, self._renewed, self._won = self.here, 0, 0.0
         self._kept, self._fresh = None, self._is_same
         own, self._steps = differences(
             self._samples, self.at, self.here, self._seen, known=len(columns)
@@ -268,6 +274,7 @@ class Way:
             self._serves = False
             return 0.0
         self._learn(found.there, found.residual)
+        self._won += found.fell
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
             self._keep(found.fell)
         return found.fell

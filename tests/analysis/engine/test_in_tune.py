@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine.cycles import valley
+from analysis.engine.all_samples import cost_of
+from analysis.engine.cycles import tuned, valley
 from analysis.engine.followed import Followed
 from analysis.engine.in_tune import in_tune
 from analysis.engine.known import Known
@@ -95,6 +96,21 @@ def test_a_tone_is_looked_for_wherever_it_may_be_by_what_was_known_beforehand() 
     assert abs(system.tones_hz(led.point)[1] - right[1]) > 4.0 * SHARE * TONES_HZ[1]
     (there,) = in_tune(system, led, Known.priors(led))
     assert abs(system.tones_hz(there.point)[1] - right[1]) * SECONDS < 0.3
+
+
+def test_a_hypothesis_is_brought_in_tune_by_few_simulations() -> None:
+    system = Duet()
+    led = out_of_tune(system)
+    found = tuned(system, led)
+    assert found.nuisance == pytest.approx(TRUTH, abs=0.02)
+    assert cost_of(found) < cost_of(led) - 100.0
+    assert found.effort < led.effort + 50.0
+
+
+def test_what_is_in_tune_stays_as_it_is() -> None:
+    system = Duet()
+    led = follow_ring(system, TRUTH, everything=True, near=True)
+    assert tuned(system, led) is led
 
 
 def test_what_is_in_tune_leaves_no_ring_to_follow() -> None:

@@ -11,7 +11,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.instead import instead
-from analysis.engine.kin import kin_alike, lead_instead, part_of_the_way
+from analysis.engine.kin import kin_alike, kin_left, lead_instead, part_of_the_way
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import (
@@ -98,6 +98,26 @@ def test_laws_of_one_kind_are_asked_in_all_places_where_one_came_through_in_some
     assert kin_alike(best, both, CANDIDATES) == both
     assert kin_alike(replace(best, state=some.alike()), both, CANDIDATES) == []
     assert kin_alike(replace(best, costs={0.5: 5.0}), both, CANDIDATES) == []
+
+
+def test_the_law_that_led_farther_elsewhere_is_asked_first() -> None:
+    """Dry friction on; the capstan's law was lost early, a later one of the list came farther."""
+    later = replace(CAPSTAN, name="later")
+    known = CANDIDATES | {"later": later}
+    dry = dry_on(**{"size@1": 0.6})
+    best = Followed(np.zeros(1), dry, costs={1.0: 5.0})
+
+    def alone(name: str, share: float) -> Followed:
+        on = State.at(Hypothesis({name: Part(("size@1",))}), {(name, "size@1"): 0.6}, known)
+        return Followed(np.zeros(1), on, costs={share: 9.0})
+
+    lost = [alone("capstan", 0.1), alone("later", 0.2)]
+    assert [name for _, name, _ in kin_left(best, [best, *lost], known)] == [
+        "later", "capstan", "elsewhere",
+    ]  # fmt: skip
+    lost = [alone("capstan", 0.3), alone("later", 0.2)]
+    order = [name for _, name, _ in kin_left(best, [best, *lost], known)]
+    assert order == ["capstan", "later", "elsewhere"]
 
 
 def test_part_of_the_way_to_one_cause_more_takes_part_of_each_step_and_of_the_new_cause() -> None:
