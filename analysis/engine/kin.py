@@ -154,7 +154,8 @@ def kin_left(
 ) -> Iterator[tuple[str, str, tuple[str, ...]]]:
     """Other laws for those of a hypothesis that have not come to the end.
 
-    First those that led farthest in any hypothesis: beside another cause they are the likeliest.
+    First those that were not led beside what else is on, and of these, those that led farthest in
+    any hypothesis: they are the likeliest.
 
     Parameters
     ----------
@@ -180,8 +181,14 @@ def kin_left(
         and not one.is_bent
     }
 
-    def farthest(kin: tuple[str, str]) -> tuple[float, float]:
-        return min((farthest_first(one) for one in led if kin[1] in one.names), default=(0.0, 0.0))
+    def with_it(known: str, name: str) -> tuple[str, ...]:
+        return tuple(sorted({*best.names, name} - {known}))
+
+    tried = {one.names for one in led}
+
+    def order(kin: tuple[str, str]) -> tuple[bool, tuple[float, float]]:
+        came = (farthest_first(one) for one in led if kin[1] in one.names)
+        return with_it(*kin) in tried, min(came, default=(0.0, 0.0))
 
     every = (
         (known, name)
@@ -189,10 +196,9 @@ def kin_left(
         for name, one in candidates.items()
         if one.family and one.family == candidates[known].family and name not in best.names
     )
-    for known, name in sorted(every, key=farthest):
-        names = tuple(sorted({*best.names, name} - {known}))
-        if names not in done:
-            yield known, name, names
+    for known, name in sorted(every, key=order):
+        if with_it(known, name) not in done:
+            yield known, name, with_it(known, name)
 
 
 def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed:

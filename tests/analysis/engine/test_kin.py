@@ -100,24 +100,24 @@ def test_laws_of_one_kind_are_asked_in_all_places_where_one_came_through_in_some
     assert kin_alike(replace(best, costs={0.5: 5.0}), both, CANDIDATES) == []
 
 
-def test_the_law_that_led_farther_elsewhere_is_asked_first() -> None:
-    """Dry friction on; the capstan's law was lost early, a later one of the list came farther."""
-    later = replace(CAPSTAN, name="later")
-    known = CANDIDATES | {"later": later}
-    dry = dry_on(**{"size@1": 0.6})
-    best = Followed(np.zeros(1), dry, costs={1.0: 5.0})
+def test_a_law_that_led_farther_beside_something_else_is_asked_first() -> None:
+    later, other = replace(CAPSTAN, name="later"), replace(DRY, name="other", family="")
+    known = CANDIDATES | {"later": later, "other": other}
+    best = Followed(np.zeros(1), dry_on(**{"size@1": 0.6}), costs={1.0: 5.0})
 
-    def alone(name: str, share: float) -> Followed:
-        on = State.at(Hypothesis({name: Part(("size@1",))}), {(name, "size@1"): 0.6}, known)
+    def led(share: float, *names: str) -> Followed:
+        hypothesis = Hypothesis({name: Part(("size@1",)) for name in names})
+        on = State.at(hypothesis, {(name, "size@1"): 0.6 for name in names}, known)
         return Followed(np.zeros(1), on, costs={share: 9.0})
 
-    lost = [alone("capstan", 0.1), alone("later", 0.2)]
-    assert [name for _, name, _ in kin_left(best, [best, *lost], known)] == [
-        "later", "capstan", "elsewhere",
-    ]  # fmt: skip
-    lost = [alone("capstan", 0.3), alone("later", 0.2)]
-    order = [name for _, name, _ in kin_left(best, [best, *lost], known)]
-    assert order == ["capstan", "later", "elsewhere"]
+    def order(*others: Followed) -> list[str]:
+        return [name for _, name, _ in kin_left(best, [best, *others], known)]
+
+    assert order() == ["capstan", "elsewhere", "later"]
+    far = led(0.2, "later", "other")
+    assert order(far) == ["later", "capstan", "elsewhere"]
+    # What was tried in this very place, and was lost, comes last.
+    assert order(far, led(0.3, "capstan")) == ["later", "elsewhere", "capstan"]
 
 
 def test_part_of_the_way_to_one_cause_more_takes_part_of_each_step_and_of_the_new_cause() -> None:
