@@ -74,12 +74,12 @@ def in_tune(system: System, led: Followed, known: Known) -> Iterator[Followed]:
     moves = tones_by_number(system, led, length_s)
     turns = np.sqrt(np.maximum(np.einsum("jk,kl,jl->j", moves, spread, moves), 0.0))
     reach_hz = KNOWN * turns / (2.0 * np.pi * length_s)
-    about = _Beforehand(system.tones_hz(_beforehand(led, known).point), reach_hz)
+    about = _Beforehand(system.tones_hz(_as_known(led, known).point), reach_hz)
     for ring in _rings(Samples(system, everything=True), led, tones, about, length_s)[:MOST]:
         yield _tuned(system, led, spread, ring, length_s)
 
 
-def _beforehand(led: Followed, known: Known) -> Followed:
+def _as_known(led: Followed, known: Known) -> Followed:
     """Where numbers were likeliest before the samples; what nothing was known of stays."""
     off = np.where(np.diag(known.information) > 0.0, known.at - led.numbers, 0.0)
     return led.moved(off, 1.0)

@@ -181,24 +181,22 @@ def kin_left(
         and not one.is_bent
     }
 
-    def with_it(known: str, name: str) -> tuple[str, ...]:
-        return tuple(sorted({*best.names, name} - {known}))
-
-    tried = {one.names for one in led}
-
-    def order(kin: tuple[str, str]) -> tuple[bool, tuple[float, float]]:
-        came = (farthest_first(one) for one in led if kin[1] in one.names)
-        return with_it(*kin) in tried, min(came, default=(0.0, 0.0))
-
-    every = (
-        (known, name)
+    every = [
+        (known, name, tuple(sorted({*best.names, name} - {known})))
         for known in best.names
         for name, one in candidates.items()
         if one.family and one.family == candidates[known].family and name not in best.names
-    )
-    for known, name in sorted(every, key=order):
-        if with_it(known, name) not in done:
-            yield known, name, with_it(known, name)
+    ]
+    tried = {one.names for one in led}
+
+    def order(kin: tuple[str, str, tuple[str, ...]]) -> tuple[bool, tuple[float, float]]:
+        _, name, names = kin
+        came = (farthest_first(one) for one in led if name in one.names)
+        return names in tried, min(came, default=(0.0, 0.0))
+
+    for kin in sorted(every, key=order):
+        if kin[2] not in done:
+            yield kin
 
 
 def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed:

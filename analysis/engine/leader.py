@@ -155,6 +155,7 @@ class Leader:
         self._keep(found)
 
     def _keep(self, found: Followed) -> None:
+        """Among what was led; what may be the best of a single recording is brought in tune."""
         contends = cost_of(found) < cost_of(self._best) + BEHIND
         if found.to_end and contends and not has_several(self._system):
             # Of several recordings each is led over its own ridges.

@@ -221,18 +221,16 @@ class Way:
             if self._settled or hopeless:
                 return False
             self._differences()
-        worn = self._won > WORTH_ALL_ANEW
-        fresh = self._fresh and not worn
+        fresh = self._fresh
         fell = self._step(inside, best)
         self._settled |= fresh and fell < WORTH_ANEW
         if fell > 0.0:
             return True
-        told = self._is_same and self.at.state is None and not worn
+        told = self._holds and self.at.state is None
         if fresh or self._settled or self._serves or told:
             return False
         assert self._columns is not None
-        same = self._is_same and not worn
-        self._kept = self._columns[: len(self.at.nuisance)] if same else None
+        self._kept = self._columns[: len(self.at.nuisance)] if self._holds else None
         self._columns = None
         return self.step(share, lost, best)
 
@@ -244,6 +242,11 @@ class Way:
         off = self._told - self.here
         return float(off @ off) < SAME * len(off)
 
+    @property
+    def _holds(self) -> bool:
+        """Whether that is still what nuisances do here: no valley has turned since."""
+        return self._is_same and self._won <= WORTH_ALL_ANEW
+
     def _differences(self) -> None:
         """What every number does here; where nuisances' was lent or kept, only what is on does."""
         self._serves = self._lent is not None and self._seen == 1.0
@@ -253,7 +256,7 @@ class Way:
         columns = np.zeros((0, len(self.here))) if self._kept is None else self._kept
         if len(columns) == 0:
             self._told, self._renewed, self._won = self.here, 0, 0.0
-        self._kept, self._fresh = None, self._is_same
+        self._kept, self._fresh = None, self._holds
         own, self._steps = differences(
             self._samples, self.at, self.here, self._seen, known=len(columns)
         )
