@@ -36,6 +36,8 @@ class Policy:
         Whether it is there in all cables or in none.
     form_share
         Error of form; None: by the side it acts on.
+    bends
+        See `Candidate`.
     """
 
     steps: Mapping[str, float] = field(default_factory=dict)
@@ -44,6 +46,7 @@ class Policy:
     aside: tuple[str, ...] = ()
     together: bool = False
     form_share: float | None = None
+    bends: bool = False
 
 
 def _friction(**shapes: tuple[float, ...]) -> Policy:
@@ -55,6 +58,7 @@ POLICIES: dict[str, Policy] = {
     "air_drag": Policy(shapes={"arm_m": (0.15,)}),
     # Nothing may hold the hook in its gap: then it costs no energy.
     "anchor_play": Policy(
+        steps={"play_m": 1e-4},
         shapes={
             "hold_n": (0.25, 0.8),
             "held_share": (1.0, 0.0),
@@ -62,6 +66,7 @@ POLICIES: dict[str, Policy] = {
             "slide_s": (1e-3,),
         },
         form_share=0.3,
+        bends=True,
     ),
     "cable_creep": Policy(shapes={"creep_s": (2.0, 20.0), "log_share": (1.0,)}),
     # A rig's stiffness may have been measured before fibres slip, or after.
@@ -255,6 +260,7 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
         chosen_terms=12 if effect.name == "geometry" else 0,
         family=FAMILIES.get(effect.name, ""),
         grows=effect.name in GROWING,
+        bends=policy.bends,
     )
 
 

@@ -14,8 +14,9 @@ from analysis.engine.refine import Refiner
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.state import State
 
-FOLLOWED = 2
-"""Of what the ring promises, and of what is likely without it, so many are led to its phase."""
+FOLLOWED, PROMISED = 2, 4
+"""Of what the ring promises, and of what is likely without it, so many are led to its phase; and
+of what the first moments of a motion promise, where nothing comes there that lines tell."""
 
 UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
@@ -64,6 +65,9 @@ def by_lines(
         led.search.follow(told, [*alone, *single], seen=True)
         if led.search.ended:
             return Found(singles, (), faint=True)
+        if likely and led.still is not None and not led.search.arrived:
+            # What lines tell leads nowhere.
+            led.search.follow(led.promised(refiner)[:PROMISED], [], seen=True)
         poor = not led.search.arrived or led.search.is_poor
         if poor and led.search.foretells is None:
             led.search.follow(_both(refiner, null, single, alone), [], seen=True)

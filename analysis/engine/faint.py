@@ -51,7 +51,7 @@ INDEPENDENT = 1e-9
 
 
 Place = tuple[str, int, int]
-"""Of a term: candidate, variant, and which of its terms."""
+"""Of a term: candidate, look, and which of its terms."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,9 @@ class Faint:
     problem
         What is left to explain there.
     terms
-        (candidate, variant) -> what one unit of each term does, shape (f, k). One that is on has
-        but one variant: its shapes as they are.
+        (candidate, look) -> what one unit of each term does, shape (f, k): a look for each variant
+        of its shapes, and of what bends one more for each. One that is on has but one: its shapes
+        as they are.
     own
         Candidate that is on -> what its free numbers do, shape (f, k).
     rotation
@@ -178,10 +179,8 @@ def _asked(
     """What is simulated for each term that is no nuisance, and how much of it is on there."""
     found: dict[Place, tuple[Point, float]] = {}
     for candidate in candidates:
-        # What is there or not is there as a whole.
-        small = 1.0 if candidate.grows or candidate.fixed else SMALL
         there = at.effects.get(candidate.name, Setting({}))
-        for v, shapes in enumerate(_variants(candidate, at)):
+        for v, (shapes, small) in enumerate(_looks(candidate, at)):
             for k, term in enumerate(candidate.terms):
                 if (candidate.name, term.name) not in same:
                     more = there.values.get(term.name, 0.0) + small * term.step
@@ -203,10 +202,18 @@ def _kept(near: Faint | None, followed: Followed, here: Array) -> dict[Place, Ar
     return {place: row for place, row in near.seen.changes.items() if place[0] not in on}
 
 
-def _variants(candidate: Candidate, at: Point) -> Sequence[Mapping[str, float]]:
-    """Sets of shapes that are tried of a candidate; those that it has, where it is on."""
+def _looks(candidate: Candidate, at: Point) -> list[tuple[Mapping[str, float], float]]:
+    """With which shapes it is looked at, and at which share of its step.
+
+    Where it is on, with those that it has.
+    """
+    # What is there or not is there as a whole.
+    small = 1.0 if candidate.grows or candidate.fixed else SMALL
     on = at.effects.get(candidate.name)
-    return candidate.variants() if on is None else (on.shapes,)
+    if on is not None:
+        return [(on.shapes, small)]
+    shares = (small, 1.0) if candidate.bends else (small,)
+    return [(shapes, share) for share in shares for shapes in candidate.variants()]
 
 
 def _terms(
@@ -218,7 +225,7 @@ def _terms(
     """Columns of terms that are parameters; zeros for the others."""
     terms: Columns = {}
     for candidate in candidates:
-        for v in range(len(_variants(candidate, at))):
+        for v in range(len(_looks(candidate, at))):
             columns = np.zeros((len(numbers), len(candidate.terms)))
             for k, term in enumerate(candidate.terms):
                 i = same.get((candidate.name, term.name))

@@ -171,7 +171,7 @@ def _simpler(screen: Screen, scored: Scored, nothing: float) -> list[Scored]:
     if not candidate.shareable or len(every) < 2 or candidate.together:
         return [scored]
     part = Part(every, True, scored.hypothesis.parts[name].shapes)
-    alike = screen.with_part(name, part)
+    alike = screen.with_part(name, part, like=scored)
     if alike.log_score - nothing <= NEARLY * (scored.log_score - nothing):
         return [scored]
     return [scored, alike] if scored.log_score > alike.log_score + AHEAD else [alike]
@@ -198,8 +198,7 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
     state = State.of(parent, candidates)
     (name,) = parent.hypothesis.names
     part = parent.hypothesis.parts[name]
-    variant = [dict(one) for one in candidates[name].variants()].index(dict(part.shapes))
-    columns = grouped(candidates[name], found.terms[name, variant], part)
+    columns = grouped(candidates[name], found.terms[name, parent.looked[name]], part)
     does = columns @ parent.weighed.estimate
     # Numbers of shape do nothing to first order about little.
     own = np.hstack([columns, np.zeros((len(does), len(state.free) - columns.shape[1]))])

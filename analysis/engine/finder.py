@@ -1,6 +1,6 @@
 """Strong causes: from the null hypothesis to those that explain, one candidate more at a time."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -10,6 +10,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
+from analysis.engine.system import Candidate
 
 Tell = Callable[[str, int, int], None]
 """Told what is being done, how much of it is done, and of how much."""
@@ -199,23 +200,8 @@ class Finder:
         self, promised: Iterable[Promised], most: int, stage: str, hopeless: float
     ) -> None:
         """Fit the best in earnest, each set of candidates once for each choice of terms."""
-        ordered = sorted(promised, key=lambda one: -one.scored.log_score)
-        chosen: list[Scored] = []
-        sets: set[tuple[str, ...]] = set()
-        families: set[str] = set()
         anew = self._refiner.anew
-        most = MORE_ANEW * most if anew else most
-        for added, one in ordered:
-            far = one.log_score < ordered[0].scored.log_score - _reach(one) and len(chosen) >= 3
-            if one.hypothesis.names in sets:
-                continue
-            # Laws of one thing are all fitted, or none: to first order they are hard to rank.
-            family = self._candidates[added].family
-            if family not in families and ((far and not anew) or len(chosen) >= most):
-                continue
-            families |= {family} - {""}
-            sets.add(one.hypothesis.names)
-            chosen.append(one)
+        chosen = worth_fitting(promised, MORE_ANEW * most if anew else most, self._candidates, anew)
         for i, one in enumerate(chosen):
             if one.hypothesis.key not in self._fitted:
                 best = max(done.log_score for done in self._fitted.values())
@@ -225,6 +211,43 @@ class Finder:
                     self.keep(self._refiner.fit(one, at_least=best - hopeless))
             if self._tell is not None:
                 self._tell(stage, i + 1, len(chosen))
+
+
+def worth_fitting(
+    promised: Iterable[Promised], most: int, candidates: Mapping[str, Candidate], anew: bool = False
+) -> list[Scored]:
+    """What is worth fitting in earnest, the most promising first, each set of candidates once.
+
+    Parameters
+    ----------
+    promised
+        What screening promises.
+    most
+        So many at most; laws of one thing beside them.
+    candidates
+        By name.
+    anew
+        Whether however far behind: screening tells little.
+    """
+    ordered = sorted(promised, key=lambda one: -one.scored.log_score)
+    chosen: list[Scored] = []
+    sets: set[tuple[str, ...]] = set()
+    families: set[str] = set()
+    # A law that may be far off explains less of what it leaves, and is no closer for it.
+    reach = max((_reach(one) for _, one in ordered[:1]), default=0.0)
+    for added, one in ordered:
+        behind = ordered[0].scored.log_score - one.log_score
+        far = behind > max(reach, _reach(one)) and len(chosen) >= 3
+        if one.hypothesis.names in sets:
+            continue
+        # Laws of one thing are all fitted, or none: to first order they are hard to rank.
+        family = candidates[added].family
+        if family not in families and ((far and not anew) or len(chosen) >= most):
+            continue
+        families |= {family} - {""}
+        sets.add(one.hypothesis.names)
+        chosen.append(one)
+    return chosen
 
 
 def _reach(scored: Scored) -> float:

@@ -1,7 +1,7 @@
 """Screening: every candidate, alone and beside others, weighed to first order."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,12 +37,15 @@ class Scored:
         The evidence in detail; factors are those of `values`.
     values
         (candidate, term) -> magnitude.
+    looked
+        Of candidates that are not on yet, which of their columns it was told by.
     """
 
     hypothesis: Hypothesis
     log_score: float
     weighed: Weighed
     values: Mapping[tuple[str, str], float]
+    looked: Mapping[str, int] = field(default_factory=dict)
 
 
 class Screen:
@@ -55,7 +58,8 @@ class Screen:
     candidates
         By name.
     terms
-        (candidate, variant) -> columns, shape (f, k), as `Sensitivity.terms` has them.
+        (candidate, look) -> columns, shape (f, k): one for each variant of its shapes, and where
+        there are more, one for each again.
     on
         What is on already in the problem's simulation: candidate -> its part; `done` has what it
         does to the features.
@@ -98,9 +102,9 @@ class Screen:
         best: Scored | None = None
         variant = 0
         found: list[tuple[float, int, tuple[str, ...], bool]] = []
-        for v in range(len(candidate.variants())):
+        for v, shapes in self._looks(candidate):
             for terms, shared, gain in self._choices(candidate, self.terms[name, v]):
-                part = Part(terms, shared, candidate.variants()[v])
+                part = Part(terms, shared, shapes)
                 found.append((0.5 * gain + part_log_prior(candidate, part), v, terms, shared))
         # The quick score has the variance of what is on only; the best few are weighed in full.
         found.sort(key=lambda one: -one[0])
@@ -111,7 +115,7 @@ class Screen:
             seen.add((terms, shared))
             if len(seen) > 5:
                 break
-            part = Part(terms, shared, candidate.variants()[v])
+            part = Part(terms, shared, _shapes(candidate, v))
             scored = self._score(self.on.plus(name, part), {name: v}, (name,), QUICK)
             if best is None or scored.log_score > best.log_score:
                 best, variant = scored, v
@@ -120,7 +124,7 @@ class Screen:
         # One size of the error of form alone is for those that do little, however little of it they
         # explain: what explains most for its numbers is weighed in full as well.
         _, v, terms, shared = found[0]
-        most = self.on.plus(name, Part(terms, shared, candidate.variants()[v]))
+        most = self.on.plus(name, Part(terms, shared, _shapes(candidate, v)))
         whole = self._score(best.hypothesis, {name: variant}, (name,))
         if most.key == best.hypothesis.key and v == variant:
             return whole
@@ -130,10 +134,18 @@ class Screen:
         """One more candidate with given terms, each its own value, at its first variant."""
         return self.with_part(name, Part(terms, False, self.candidates[name].variants()[0]))
 
-    def with_part(self, name: str, part: Part) -> Scored:
-        """One more candidate with given terms and shapes."""
+    def with_part(self, name: str, part: Part, like: Scored | None = None) -> Scored:
+        """One more candidate with given terms and shapes, looked at as another with the same."""
         variant = list(self.candidates[name].variants()).index(dict(part.shapes))
-        return self._score(self.on.plus(name, part), {name: variant}, (name,))
+        look = variant if like is None else like.looked[name]
+        return self._score(self.on.plus(name, part), {name: look}, (name,))
+
+    def _looks(self, candidate: Candidate) -> Iterator[tuple[int, Mapping[str, float]]]:
+        """What was looked at of a candidate, and with which shapes."""
+        v = 0
+        while (candidate.name, v) in self.terms:
+            yield v, _shapes(candidate, v)
+            v += 1
 
     def _choices(
         self, candidate: Candidate, columns: Array
@@ -268,7 +280,13 @@ class Screen:
                 values |= {(name, term): value for term in group}
                 at += 1
         score = weighed.log_evidence + hypothesis.log_prior(self.candidates)
-        return Scored(hypothesis, score, weighed, values)
+        return Scored(hypothesis, score, weighed, values, variants)
+
+
+def _shapes(candidate: Candidate, look: int) -> Mapping[str, float]:
+    """The shapes of a look."""
+    variants = candidate.variants()
+    return variants[look % len(variants)]
 
 
 def groups(part: Part) -> tuple[tuple[str, ...], ...]:

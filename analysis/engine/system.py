@@ -232,6 +232,9 @@ class Candidate:
     grows
         What it does grows as the square of its magnitude: it is screened at the whole of its step,
         for a little of it tells nothing.
+    bends
+        What it does is in proportion to its magnitude as long as that is little, as of a gap that
+        is far narrower than the way through it: a ring looks at the whole of its step as well.
     shown
         Terms that samples show by themselves, without any simulation: where no simulation can
         follow them, this is there whatever else is.
@@ -251,6 +254,7 @@ class Candidate:
     fixed: bool = False
     family: str = ""
     grows: bool = False
+    bends: bool = False
     shown: tuple[str, ...] = ()
 
     def shapes_of(self, terms: Collection[str]) -> tuple[Shape, ...]:

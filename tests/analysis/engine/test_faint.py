@@ -1,6 +1,7 @@
 """Faint causes: what changes span, in few directions."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from analysis.engine.faint import _compressed, faint
 from analysis.engine.followed import Followed
-from analysis.engine.system import Point, Prediction
+from analysis.engine.system import Point, Prediction, System
 from tests.analysis.engine.test_ring_fit import LetGo, ring
 
 
@@ -55,6 +56,38 @@ def test_however_many_samples_there_are_what_is_a_fiftieth_of_their_noise_tells_
         assert float(seen @ seen) == pytest.approx(count * 0.02**2, abs=30.0)
     assert told[2_000] == pytest.approx(0.8, rel=0.2), "few samples say what they say"
     assert told[200_000] < 30.0, "many, no more than laws are exact"
+
+
+def test_of_what_bends_the_whole_of_its_step_is_looked_at_as_well() -> None:
+    class Bends(LetGo):
+        """Its magnitude does nothing more beyond a tenth of its step."""
+
+        candidates = tuple(replace(one, bends=True) for one in LetGo.candidates)
+
+        def simulate(
+            self, points: Sequence[Point], reduce: Callable[[Prediction], Any]
+        ) -> list[Any]:
+            return super().simulate([_capped(self, one) for one in points], reduce)
+
+    system = Bends(ring(0.0, 0.0, 0.0, 0.0))
+    found = faint(system, Followed(np.zeros(1), None), system.candidates)
+    for one in system.candidates:
+        looks = len([name for name, _ in found.terms if name == one.name])
+        assert looks == 2 * len(one.variants())
+        for k in range(len(one.terms)):
+            little, whole = (
+                float(np.linalg.norm(found.terms[one.name, look][:, k])) for look in (0, looks // 2)
+            )
+            assert whole == pytest.approx(0.1 * little, rel=0.1)
+
+
+def _capped(system: System, point: Point) -> Point:
+    steps = {(c.name, t.name): t.step for c in system.candidates for t in c.terms}
+    effects = {
+        name: replace(one, values={t: min(v, 0.1 * steps[name, t]) for t, v in one.values.items()})
+        for name, one in point.effects.items()
+    }
+    return replace(point, effects=effects)
 
 
 @pytest.mark.parametrize(("tone", "anew"), [(1e-4, False), (0.05, True)])

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from analysis.engine import diagnose
-from analysis.engine.evidence import Problem
+from analysis.engine.evidence import Problem, Weighed
 from analysis.engine.faint import _labels
-from analysis.engine.screen import Screen
+from analysis.engine.finder import Promised, worth_fitting
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.screen import Scored, Screen
 from analysis.engine.system import Candidate, Term
 from tests.analysis.engine.test_by_ring import Tuned
 from tests.analysis.engine.test_ring_fit import SIGMA, ring
@@ -70,3 +72,47 @@ def test_a_number_that_is_off_by_more_than_is_known_of_it_is_named(
     for cause in found.judgement.causes:
         assert cause.name == "tone"
         assert cause.values["share"] == pytest.approx(sigmas * SIGMA, rel=0.02)
+
+
+def test_what_bends_with_its_size_is_told_by_the_look_that_fits() -> None:
+    """A gap of 0.1 takes all of a motion within it: a little of it tells nothing of that."""
+    generator = np.random.default_rng(2)
+    little, whole = 300.0 * generator.normal(size=(2, 60))
+    problem = Problem(
+        residual=0.8 * whole,
+        nuisance=np.zeros((60, 0)),
+        at=np.zeros(0),
+        base=np.ones(60),
+        labels=_labels(60),
+        used=np.ones(60, dtype=bool),
+    )
+    term = Term("gap", "gap", "m", "", 0.0, 3.0, 0.1)
+    play = Candidate("play", "play", "plant", (term,), form_share=0.01, bends=True)
+    looks = {("play", look): does[:, None] / 0.1 for look, does in enumerate((little, whole))}
+    screen = Screen(problem, {"play": play}, looks)
+    best = screen.best_of("play")
+    assert best is not None
+    assert best.looked == {"play": 1}
+    assert best.values["play", "gap"] == pytest.approx(0.08, rel=0.02)
+    same = screen.with_part("play", best.hypothesis.parts["play"], like=best)
+    assert same.log_score == pytest.approx(best.log_score)
+
+
+def test_what_may_be_far_off_is_fitted_though_it_leaves_little() -> None:
+    """Its own error forgives it what others leave; screening is as wrong about it as about them."""
+    promised = {"first": (0.0, 900.0), "second": (-60.0, 900.0), "third": (-80.0, 900.0)}
+    promised |= {"loose": (-90.0, 5.0), "hopeless": (-400.0, 5.0)}
+    candidates = {name: Candidate(name, name, "plant", (SHARES[0],)) for name in promised}
+    found = [Promised(name, _scored(name, *one)) for name, one in promised.items()]
+    chosen = worth_fitting(found, 7, candidates)
+    assert [one.hypothesis.names for one in chosen] == [
+        ("first",), ("second",), ("third",), ("loose",),
+    ]  # fmt: skip
+    assert len(worth_fitting(found, 2, candidates)) == 2
+
+
+def _scored(name: str, log_score: float, chi2: float) -> Scored:
+    hypothesis = Hypothesis({name: Part((SHARES[0].name,))})
+    none = np.zeros(0)
+    weighed = Weighed(log_score, none, np.zeros((0, 0)), none, chi2, none, none, 0.0)
+    return Scored(hypothesis, log_score, weighed, {})
