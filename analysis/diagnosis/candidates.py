@@ -83,8 +83,12 @@ POLICIES: dict[str, Policy] = {
     "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),
     "cable_stiffening": Policy(shapes={"quadratic_share": (0.0, 3.0), "hardening": (0.3,)}),
-    # A rig's stiffness may have been measured more slowly than the slowest branch relaxes.
-    "cable_structural": Policy(form_share=LINEAR, shapes={"decades_below": (0.0,)}),
+    # A rig's stiffness may have been measured more slowly than the slowest branch relaxes; and
+    # whoever has branches farther apart, as many do with one a decade, has a loss that ripples.
+    "cable_structural": Policy(
+        form_share=LINEAR,
+        shapes={"decades_below": (0.0,), "branch_ratio": (5.0,), "highest_hz": (125.0,)},
+    ),
     "platform_damping": Policy(form_share=LINEAR),
     "cable_modes": Policy(form_share=0.4),
     # A string that hangs between a wall and what moves is shaken, whichever cable it is.
