@@ -13,6 +13,7 @@ from analysis.engine.more_leader import FAR_BEHIND
 from analysis.engine.refine import Refiner
 from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.state import State
+from analysis.engine.survey import bends, sticks
 
 FOLLOWED, PROMISED = 2, 4
 """Of what the ring promises, and of what is likely without it, so many are led to its phase; and
@@ -65,8 +66,11 @@ def by_lines(
         led.search.follow(told, [*alone, *single], seen=True)
         if led.search.ended:
             return Found(singles, (), faint=True)
+        if likely and not led.search.arrived:
+            # What lines tell leads nowhere; to what bends with its size a survey may.
+            bent = [one for one in alone if bends(one.state) and sticks(one.state)]
+            led.search.follow(bent, [], seen=True)
         if likely and led.still is not None and not led.search.arrived:
-            # What lines tell leads nowhere.
             led.search.follow(led.promised(refiner)[:PROMISED], [], seen=True)
         poor = not led.search.arrived or led.search.is_poor
         if poor and led.search.foretells is None:

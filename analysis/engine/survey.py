@@ -1,4 +1,4 @@
-"""Numbers of a law that sticks and slips, looked for over all of their ranges.
+"""Numbers of a law that sticks and slips, or has play, looked for over all of their ranges.
 
 When it slips first, and how far it was bent, decides all that comes after: over the beginning of a
 motion the misfit has a valley for every order of slips, and of these one goes on. Differences lead
@@ -7,6 +7,7 @@ to the floor of the valley one is in; which it is, many at once find that learn 
 """
 
 from dataclasses import replace
+from itertools import product
 from math import log
 from typing import Any
 
@@ -38,10 +39,14 @@ STEPS = 20
 """Of Gauss and Newton's from what is found, for each stretch."""
 
 
-def sticks(at: Followed) -> bool:
-    """Whether what is on began bent, by how much is among its numbers, and these are few."""
-    state = at.state
-    return state is not None and len(state.free) <= FEW and any(map(_begins, state.numbers))
+def sticks(state: State) -> bool:
+    """Whether what is on sticks or has play, and its free numbers are few."""
+    return len(state.free) <= FEW and (bends(state) or any(map(_begins, state.numbers)))
+
+
+def bends(state: State) -> bool:
+    """Whether a law that is on bends with its size: see `Candidate`."""
+    return any(state.candidates[name].bends for name in state.hypothesis.names)
 
 
 def surveyed(samples: Samples, start: Followed, nuisance: Array) -> Followed:
@@ -63,8 +68,9 @@ def surveyed(samples: Samples, start: Followed, nuisance: Array) -> Followed:
     """
     assert start.state is not None
     best = start
-    for seed in SEEDS:
-        found = _evolved(samples, nuisance, start.state, seed)
+    # What is one thing or another may be either.
+    for seed, state in product(SEEDS, (start.state, *start.state.otherwise())):
+        found = _evolved(samples, nuisance, state, seed)
         best = min(best, _led(samples, Followed(nuisance, found)), key=lambda one: one.left)
         if best.left < FOUND:
             break
@@ -108,9 +114,9 @@ def _begins(number: Number) -> bool:
 
 
 def _range(number: Number, value: float) -> tuple[float, float]:
-    """A magnitude by a factor; all of a shape's range; of one from nothing, up to usual."""
+    """A magnitude by a factor; of a shape all of its range; of one from nothing, up to usual."""
     if number.shape is None:
         factor = float(np.exp(FACTOR))
         return max(value / factor, number.low), min(value * factor, number.high)
-    usual = number.high if number.shape.logarithmic or _begins(number) else number.shape.default
-    return number.low, usual
+    whole = number.shape.logarithmic or _begins(number) or number.low < 0.0
+    return number.low, number.high if whole else number.shape.default

@@ -59,7 +59,7 @@ class ToldLeader(MoreLeader):
 
     def _surveyed(self, begun: list[Followed]) -> list[Followed]:
         """What leaves little of the first stretch put first, where only a survey leads there."""
-        stuck = [one for one in begun if sticks(one)]
+        stuck = [one for one in begun if one.state is not None and sticks(one.state)]
         if not stuck or begun[0].left < NEAR or (self._led and self._best.to_end):
             return begun
         still = self._nothing.about or self._nothing

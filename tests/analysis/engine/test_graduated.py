@@ -126,7 +126,8 @@ def test_a_survey_finds_the_valley_where_what_was_told_is_far_off() -> None:
     far = Guess(state_of(1.4, -0.6), np.zeros(1))
     lost = graduated(samples, far)
     assert lost.left > 10.0
-    assert sticks(lost)
+    assert lost.state is not None
+    assert sticks(lost.state)
     found = surveyed(samples, lost, np.zeros(1))
     assert found.left == pytest.approx(1.0, abs=0.2)
     assert found.state is not None
