@@ -66,12 +66,8 @@ def by_lines(
         led.search.follow(told, [*alone, *single], seen=True)
         if led.search.ended:
             return Found(singles, (), faint=True)
-        if likely and not led.search.arrived:
-            # What lines tell leads nowhere; to what bends with its size a survey may.
-            bent = [one for one in alone if bends(one.state) and sticks(one.state)]
-            led.search.follow(bent, [], seen=True)
-        if likely and led.still is not None and not led.search.arrived:
-            led.search.follow(led.promised(refiner)[:PROMISED], [], seen=True)
+        if likely:
+            _follow_others(refiner, led, alone)
         poor = not led.search.arrived or led.search.is_poor
         if poor and led.search.foretells is None:
             led.search.follow(_both(refiner, null, single, alone), [], seen=True)
@@ -89,6 +85,24 @@ def by_lines(
             led.search.follow_beside(ranked[0].hypothesis.names)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
+
+
+def _follow_others(refiner: Refiner, led: Led, alone: Sequence[Guess]) -> None:
+    """Where what is likely by lines leads nowhere, follow what they and a short ring tell badly.
+
+    What bends with its size is led by a survey. What a motion's first moments promise was not asked
+    where parameters alone foretell nothing that moves.
+    """
+    bent = [one for one in alone if bends(one.state) and sticks(one.state)]
+    if bent and _is_nowhere(led):
+        led.search.follow(bent, [], seen=True)
+    if led.still is not None and _is_nowhere(led):
+        led.search.follow(led.promised(refiner)[:PROMISED], [], seen=True)
+
+
+def _is_nowhere(led: Led) -> bool:
+    """Whether nothing leads to the end, nor foretells a part of the time."""
+    return not led.search.arrived and led.search.foretells is None
 
 
 def _shown(refiner: Refiner) -> Fitted | None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
+from analysis.engine.followed import Followed
 from analysis.engine.graduated import STRETCH, alike, as_told, graduated
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -31,6 +32,11 @@ STUCK = Candidate(
 STUCK = replace(STUCK, family="sticking")
 SOFT = replace(STUCK, name="soft", title="a mass that sticks softly")
 BOTH = {"soft": SOFT, "stuck": STUCK}
+PLAY = replace(
+    STUCK, name="play", title="a mass with play", family="", bends=True,
+    shapes=(Shape("middle", "1", 0.0, -1.0, 1.0, logarithmic=False),
+            Shape("held", "1", 1.0, 0.0, 1.0, (1.0, 0.0), logarithmic=False, whole=True)),
+)  # fmt: skip
 
 
 class Sticking:
@@ -57,11 +63,11 @@ class Sticking:
         return np.array([TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]))])
 
     def _one(self, point: Point) -> Array:
-        on, soft = point.effects.get("stuck"), point.effects.get("soft")
-        second = 0.02 if on is None else 0.0
-        on = on or soft
+        on = next(iter(point.effects.values()), None)
+        shapes = on.shapes if on else {}
+        second = 0.02 if "soft" in point.effects or not shapes.get("held", 1.0) else 0.0
         force = on.values.get("force@1", 0.0) if on else 0.0
-        bent = on.shapes.get("bent@1", 0.0) if on else 0.0
+        bent = shapes.get("bent@1", shapes.get("middle", 0.0))
         since = np.maximum(T_S - START_S, 0.0)
         hertz = TONE_HZ * (1.0 + SIGMA * float(point.nuisance[0]) + 0.3 * force * bent)
         shift = force * (1.0 - bent) * (T_S > START_S)
@@ -150,3 +156,20 @@ def test_what_is_one_thing_or_another_is_asked_the_other_way() -> None:
     assert other.values == pytest.approx(state.values)
     assert not other.is_about(state)
     assert not list(state_of(0.5, 0.2).otherwise())
+
+
+def test_a_survey_tells_as_which_of_two_things_what_has_play_is_there() -> None:
+    def played(force: float, middle: float, held: float) -> State:
+        part = Part(("force@1",), shapes={"middle": middle, "held": held})
+        return State.at(Hypothesis({"play": part}), {("play", "force@1"): force}, {"play": PLAY})
+
+    true = played(0.6, -0.5, held=0.0)
+    samples = Samples(Sticking(true.point(np.array([1.0]))), everything=True)
+    start = Followed(np.zeros(1), played(1.4, 0.6, held=1.0))
+    assert start.state is not None
+    assert sticks(start.state)
+    found = surveyed(samples, start, np.zeros(1))
+    assert found.state is not None
+    assert found.state.hypothesis.parts["play"].shapes["held"] == 0.0
+    assert found.left == pytest.approx(1.0, abs=0.2)
+    assert found.state.values == pytest.approx(true.values, abs=0.02)
