@@ -177,8 +177,9 @@ BETWEEN = (
     "depth_share",
     "front_share",
     "ramps_kept_share",
+    "highest_hz",
 )
-"""Shapes that lead from one law to another."""
+"""Shapes that lead from one law to another: a row of branches, to one whose end is out of sight."""
 
 SATURATION_STEP_N = 0.3
 

@@ -136,8 +136,10 @@ class Screen:
 
     def with_part(self, name: str, part: Part, like: Scored | None = None) -> Scored:
         """One more candidate with given terms and shapes, looked at as another with the same."""
-        variant = list(self.candidates[name].variants()).index(dict(part.shapes))
-        look = variant if like is None else like.looked[name]
+        if like is None:
+            look = list(self.candidates[name].variants()).index(dict(part.shapes))
+        else:
+            look = like.looked[name]
         return self._score(self.on.plus(name, part), {name: look}, (name,))
 
     def _looks(self, candidate: Candidate) -> Iterator[tuple[int, Mapping[str, float]]]:

@@ -9,7 +9,7 @@ from analysis.engine.faint import _labels
 from analysis.engine.finder import Promised, worth_fitting
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.screen import Scored, Screen
-from analysis.engine.system import Candidate, Term
+from analysis.engine.system import Array, Candidate, Term
 from tests.analysis.engine.test_by_ring import Tuned
 from tests.analysis.engine.test_ring_fit import SIGMA, ring
 
@@ -45,14 +45,7 @@ def test_what_grows_as_the_square_of_its_magnitude_begins_at_the_root() -> None:
     """Screened at 0.3, it does a quarter of that where its magnitude is half of it."""
     generator = np.random.default_rng(1)
     does, step = 300.0 * generator.normal(size=60), 0.3
-    problem = Problem(
-        residual=0.25 * does,
-        nuisance=np.zeros((60, 0)),
-        at=np.zeros(0),
-        base=np.ones(60),
-        labels=_labels(60),
-        used=np.ones(60, dtype=bool),
-    )
+    problem = _left(0.25 * does)
     term = Term("depth", "depth", "N", "", 0.0, 3.0, step)
     clipped = Candidate("clipped", "clipped", "cell", (term,), form_share=0.01, grows=True)
     columns = {("clipped", 0): does[:, None] / step}
@@ -78,14 +71,7 @@ def test_what_bends_with_its_size_is_told_by_the_look_that_fits() -> None:
     """A gap of 0.1 takes all of a motion within it: a little of it tells nothing of that."""
     generator = np.random.default_rng(2)
     little, whole = 300.0 * generator.normal(size=(2, 60))
-    problem = Problem(
-        residual=0.8 * whole,
-        nuisance=np.zeros((60, 0)),
-        at=np.zeros(0),
-        base=np.ones(60),
-        labels=_labels(60),
-        used=np.ones(60, dtype=bool),
-    )
+    problem = _left(0.8 * whole)
     term = Term("gap", "gap", "m", "", 0.0, 3.0, 0.1)
     play = Candidate("play", "play", "plant", (term,), form_share=0.01, bends=True)
     looks = {("play", look): does[:, None] / 0.1 for look, does in enumerate((little, whole))}
@@ -109,6 +95,19 @@ def test_what_may_be_far_off_is_fitted_though_it_leaves_little() -> None:
         ("first",), ("second",), ("third",), ("loose",),
     ]  # fmt: skip
     assert len(worth_fitting(found, 2, candidates)) == 2
+
+
+def _left(residual: Array) -> Problem:
+    """What is left to explain beside white noise, where no parameter is free."""
+    size = len(residual)
+    return Problem(
+        residual=residual,
+        nuisance=np.zeros((size, 0)),
+        at=np.zeros(0),
+        base=np.ones(size),
+        labels=_labels(size),
+        used=np.ones(size, dtype=bool),
+    )
 
 
 def _scored(name: str, log_score: float, chi2: float) -> Scored:
