@@ -10,9 +10,9 @@ import os
 import platform as computer
 import tempfile
 import threading
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 
 def fingerprint(sources: Iterable[str]) -> str:
@@ -63,15 +63,45 @@ _ONE_AT_A_TIME = threading.RLock()
 code to where the user stands."""
 
 
-@contextmanager
-def kept_in(folder: Path | None) -> Iterator[None]:
-    """Functions that are made ``njit(cache=True)`` meanwhile are kept in this folder."""
+def kept(function: Callable[..., Any], folder: Path | None, **options: Any) -> Any:
+    """A function that numba compiles at its first call, or loads from a folder.
+
+    Of processes that want the same machine code one compiles it; the others wait and load it.
+
+    Parameters
+    ----------
+    function
+        What is compiled.
+    folder
+        Where its machine code is kept; None: nowhere.
+    options
+        Of `numba.njit`.
+    """
     import numba
 
     with _ONE_AT_A_TIME:
         before = numba.config.CACHE_DIR
         try:
             numba.config.CACHE_DIR = str(folder or "")
-            yield
+            made = numba.njit(cache=folder is not None, **options)(function)
         finally:
             numba.config.CACHE_DIR = before
+    if folder is not None:
+        _by_one_process(made, folder / f"{function.__module__}.{function.__name__}.lock")
+    return made
+
+
+def _by_one_process(made: Any, path: Path) -> None:
+    """Let a process compile what no other compiles meanwhile."""
+    from filelock import FileLock
+    from numba.core.compiler_lock import global_compiler_lock
+
+    compile_it = made.compile
+
+    def alone(signature: Any) -> Any:
+        # numba's own lock first, always: two threads that took them in either order would wait
+        # for each other.
+        with global_compiler_lock, FileLock(path):
+            return compile_it(signature)
+
+    made.compile = alone

@@ -130,15 +130,11 @@ def _is_cached(name: str) -> bool:
 @cache
 def compiled(name: str) -> Any:
     """A function of `CALLED`, compiled or from the cache, at its first call."""
-    import numba
-
     module = import_module(f"model.{CALLED[name]}")
     options: dict[str, Any] = {"error_model": "numpy", **UNCOUNTED, **_fast(module)}
     _compile_laws()
-    folder = cache_folder()
-    with machine_code.kept_in(folder):
-        whole = getattr(module, name)
-        return numba.njit(cache=folder is not None, nogil=True, **options)(whole)
+    whole = getattr(module, name)
+    return machine_code.kept(whole, cache_folder(), nogil=True, **options)
 
 
 def _fast(module: ModuleType) -> dict[str, Any]:

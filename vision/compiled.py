@@ -8,8 +8,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numba as nb
-
 from cdpr8 import machine_code
 
 SOURCES = (
@@ -36,6 +34,4 @@ def cache_folder() -> Path | None:
 
 def compiled(function: Any) -> Any:
     """A function as machine code, made or loaded at its first call."""
-    folder = cache_folder()
-    with machine_code.kept_in(folder):
-        return nb.njit(cache=folder is not None, error_model="numpy", fastmath=FAST)(function)
+    return machine_code.kept(function, cache_folder(), error_model="numpy", fastmath=FAST)

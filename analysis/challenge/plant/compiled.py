@@ -9,16 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from numba import njit
-
 from cdpr8 import machine_code
 
 
 def law(function: Callable[..., Any]) -> Any:
     """A function of numbers and arrays, compiled, or loaded from the cache, at its first call."""
-    folder = cache_folder()
-    with machine_code.kept_in(folder):
-        return njit(cache=folder is not None)(function)
+    return machine_code.kept(function, cache_folder())
 
 
 @cache
