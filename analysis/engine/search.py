@@ -12,6 +12,7 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.moved import moved_far, released
+from analysis.engine.opening import from_opening, opening_of
 from analysis.engine.part import has_several, rings
 from analysis.engine.pilot import by_pilot
 from analysis.engine.refine import Refiner
@@ -100,7 +101,10 @@ def search(
     null = refiner.nothing()
 
     found = Found((), (), faint=False)
-    if rings(system):
+    opening = opening_of(system) if start is None else None
+    if opening is not None:
+        found = _from_opening(refiner, opening, most_causes, tell)
+    if rings(system) and not found.fitted and found.led is None:
         several = has_several(system)
         if several:
             found = by_pilot(refiner, most_causes, tell, start)
@@ -134,6 +138,19 @@ def search(
         system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
         faint=found.faint, aside=found.aside, moved=moved,
     )  # fmt: skip
+
+
+def _from_opening(refiner: Refiner, opening: Until, most_causes: int, tell: Tell | None) -> Found:
+    """What the first part of a long recording says, led through the whole; nothing: nowhere.
+
+    Where parameters alone explain the first part, the ring of the whole is asked from there.
+    """
+    told = search(opening, tell, most_causes=most_causes)
+    start = from_opening(refiner.system, told.fitted) if told.faint else None
+    if start is None:
+        return Found((), (), faint=False)
+    found = by_ring(refiner, most_causes, tell, start)
+    return found._replace(screened=found.screened or told.screened)
 
 
 def _as_stated(fitted: Sequence[Fitted], told: Told) -> list[Fitted]:
