@@ -10,9 +10,13 @@ import os
 import platform as computer
 import tempfile
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
+
+PATIENCE_S = 300.0
+"""No longer is another process waited for, which may hang: to compile twice is only slower."""
 
 
 def fingerprint(sources: Iterable[str]) -> str:
@@ -93,7 +97,6 @@ def kept(function: Callable[..., Any], folder: Path | None, **options: Any) -> A
 
 def _by_one_process(made: Any, path: Path) -> None:
     """Let a process compile what no other compiles meanwhile."""
-    from filelock import FileLock
     from numba.core.compiler_lock import global_compiler_lock
 
     compile_it = made.compile
@@ -101,7 +104,21 @@ def _by_one_process(made: Any, path: Path) -> None:
     def alone(signature: Any) -> Any:
         # numba's own lock first, always: two threads that took them in either order would wait
         # for each other.
-        with global_compiler_lock, FileLock(path):
+        with global_compiler_lock, _alone(path):
             return compile_it(signature)
 
     made.compile = alone
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """While no other process is here; where a file cannot be locked, with others."""
+    from filelock import FileLock
+
+    lock = FileLock(path)
+    with suppress(OSError, NotImplementedError):
+        lock.acquire(timeout=PATIENCE_S)
+    try:
+        yield
+    finally:
+        lock.release()

@@ -45,6 +45,22 @@ def test_one_of_three_processes_compiles_and_the_others_load(tmp_path: Path) -> 
     assert said == [["0", "1"], ["0", "1"], ["1", "0"]]
 
 
+def test_one_that_hangs_is_not_waited_for_for_ever(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from filelock import FileLock
+
+    from cdpr8 import machine_code
+
+    def half(value: float) -> float:
+        return 0.5 * value
+
+    monkeypatch.setattr(machine_code, "PATIENCE_S", 0.1)
+    made = machine_code.kept(half, tmp_path)
+    with FileLock(tmp_path / f"{half.__module__}.half.lock"):
+        assert made(3.0) == 1.5
+
+
 def test_what_cannot_be_compiled_leaves_no_lock(tmp_path: Path) -> None:
     from numba.core.errors import TypingError
 
