@@ -127,7 +127,7 @@ def _kinds(one: Followed) -> list[str]:
     if one.state is None:
         return []
     known = one.state.candidates
-    return sorted(known[name].family or name for name in one.names)
+    return sorted(known[name].kind for name in one.names)
 
 
 def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) -> Followed:

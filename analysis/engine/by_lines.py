@@ -215,4 +215,4 @@ def _both(
 def _kind(refiner: Refiner, guess: Guess) -> frozenset[str]:
     """Of what its causes are laws."""
     names = guess.hypothesis.names
-    return frozenset(refiner.candidates[name].family or name for name in names)
+    return frozenset(refiner.candidates[name].kind for name in names)

@@ -292,7 +292,7 @@ def _among_kin(
     """Scores in which laws of one family differ by less: none of them is the true one."""
     groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
     for i, one in enumerate(fitted):
-        names = (candidates[name].family or name for name in one.hypothesis.names)
+        names = (candidates[name].kind for name in one.hypothesis.names)
         groups[tuple(sorted(names))].append(i)
     found = scores.copy()
     for places in groups.values():

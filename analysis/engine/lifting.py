@@ -139,9 +139,9 @@ def lifted(
     came: list[tuple[Followed, tuple[str, ...]]] = []
     stuck: Chained | None = None
     known: list[set[str]] = []
-    family = {one.name: one.family or one.name for one in system.candidates}
+    kind_of = {one.name: one.kind for one in system.candidates}
     for one in found:
-        kinds = {family[name] for name in one.names}
+        kinds = {kind_of[name] for name in one.names}
         if one.state is None or any(kinds <= other or other <= kinds for other in known):
             continue
         at = Followed(one.nuisance, one.state.whole())

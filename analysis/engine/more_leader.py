@@ -48,7 +48,7 @@ class MoreLeader(RivalLeader):
     """
 
     def _kinds(self, names: Sequence[str]) -> set[str]:
-        return {self._refiner.candidates[name].family or name for name in names}
+        return {self._refiner.candidates[name].kind for name in names}
 
     def _explains(self, led: Followed) -> bool:
         """Whether what is on explains to the noise."""
@@ -66,13 +66,12 @@ class MoreLeader(RivalLeader):
             return False
         self._asked_more = True
         found = self._faint(best)
-        family = {name: one.family or name for name, one in refiner.candidates.items()}
         promised: dict[str, list[Scored]] = {}
         for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
             if best.to_end and best.strain < FAR and not self._would_tell(found, scored):
                 continue
             (added,) = set(scored.hypothesis.names) - set(best.names)
-            promised.setdefault(family[added], []).append(scored)
+            promised.setdefault(refiner.candidates[added].kind, []).append(scored)
 
         def lead(scored: Scored) -> Followed:
             start = Followed(nuisances_of(found, scored), State.of(scored, refiner.candidates))

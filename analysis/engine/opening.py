@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from analysis.engine.by_ring import Start
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.lifting import LIFTED, MOST_LIFTED
 from analysis.engine.part import has_several, rings
 from analysis.engine.ring_fit import FAINT
 from analysis.engine.system import Bundle, System
@@ -19,10 +20,6 @@ TURNS, PERIODS = 70.0, 20.0
 
 WORTH_IT = 0.6
 """A first part that is more than this of the whole saves nothing."""
-
-BEHIND, MOST = 40.0, 6
-"""What is no farther behind the best of the first part, as a score, is led through the whole, at
-most so many; of laws of the same things the best."""
 
 
 def opening_of(system: System) -> Until | None:
@@ -41,18 +38,17 @@ def opening_of(system: System) -> Until | None:
 
 def _share(bundle: Bundle) -> float:
     """Of the time of a bundle, how much leads the way."""
-    moves = [one for one in bundle.segments if one.fundamental_hz is not None]
-    enough_s = TURNS / min(bundle.tones_hz)
-    begins_s = min((one.start_s for one in moves), default=float(bundle.t_s[0]))
-    repeats_hz = min((one.fundamental_hz or 0.0 for one in moves), default=0.0)
-    if repeats_hz > 0.0:
-        enough_s = max(enough_s, PERIODS / repeats_hz)
     start_s, end_s = float(bundle.t_s[0]), float(bundle.t_s[-1])
+    repeats = {one.start_s: one.fundamental_hz for one in bundle.segments if one.fundamental_hz}
+    enough_s = max([TURNS / min(bundle.tones_hz), *(PERIODS / hz for hz in repeats.values())])
+    begins_s = min(repeats, default=start_s)
     return (begins_s - start_s + enough_s) / (end_s - start_s)
 
 
 def from_opening(system: System, fitted: Sequence[Fitted]) -> Start | None:
     """From where the whole is led; None: its first part leads nowhere.
+
+    As of a pilot's, what contends is led on: of laws of the same things the best.
 
     Parameters
     ----------
@@ -67,10 +63,10 @@ def from_opening(system: System, fitted: Sequence[Fitted]) -> Start | None:
     nuisance = alone.point.nuisance
     if alone.left < FAINT:
         return Start(nuisance)
-    family = {one.name: one.family or one.name for one in system.candidates}
+    kind_of = {one.name: one.kind for one in system.candidates}
     led: dict[frozenset[str], Followed] = {}
     for one in fitted:
-        if one.hypothesis.parts and one.log_score > fitted[0].log_score - BEHIND:
-            kinds = frozenset(family[name] for name in one.hypothesis.names)
+        if one.hypothesis.parts and one.log_score > fitted[0].log_score - LIFTED:
+            kinds = frozenset(kind_of[name] for name in one.hypothesis.names)
             led.setdefault(kinds, Followed(one.point.nuisance, one.state))
-    return Start(nuisance, list(led.values())[:MOST]) if led else None
+    return Start(nuisance, list(led.values())[:MOST_LIFTED]) if led else None

@@ -257,6 +257,11 @@ class Candidate:
     bends: bool = False
     shown: tuple[str, ...] = ()
 
+    @property
+    def kind(self) -> str:
+        """Of what it is a law: its family's, or its own."""
+        return self.family or self.name
+
     def shapes_of(self, terms: Collection[str]) -> tuple[Shape, ...]:
         """Those that count where these terms are on."""
         return tuple(one for one in self.shapes if not one.term or one.term in terms)

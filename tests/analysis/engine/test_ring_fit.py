@@ -38,12 +38,14 @@ TONE_HZ, SIGMA = 5.0, 0.01
 T_S = np.arange(0.0, 20.0, 0.02)
 
 
-def ring(tone_share: float, damping_1_per_s: float, step: float, moment_s: float) -> Array:
+def ring(
+    tone_share: float, damping_1_per_s: float, step: float, moment_s: float, t_s: Array = T_S
+) -> Array:
     """Let go at 1 s, shape (n, 1); from a moment on the channel is off by a step."""
-    since = np.maximum(T_S - 1.0, 0.0)
+    since = np.maximum(t_s - 1.0, 0.0)
     phase = 2.0 * np.pi * TONE_HZ * (1.0 + tone_share) * since
     value = np.exp(-damping_1_per_s * since) * np.sin(phase)
-    return np.asarray(value + step * (moment_s <= T_S))[:, None]
+    return np.asarray(value + step * (moment_s <= t_s))[:, None]
 
 
 DAMPING = Candidate(
@@ -63,12 +65,13 @@ class LetGo:
     nuisances: Sequence[Nuisance] = (Nuisance("tone", SIGMA, "1"),)
     candidates: Sequence[Candidate] = (DAMPING, STEP)
 
-    def __init__(self, value: Array, noise: float = 0.02) -> None:
+    def __init__(self, value: Array, noise: float = 0.02, t_s: Array = T_S) -> None:
+        self.t_s, end_s = t_s, float(t_s[-1] + t_s[1])
         noisy = value + noise * np.random.default_rng(1).standard_normal(value.shape)
         self.bundles = (
             Bundle(
-                ("y",), ("V",), T_S, noisy, np.eye(1) * noise**2,
-                (Segment(0.0, 1.0, None, 20.0, name="rest"), Segment(1.0, 20.0, None, 20.0)),
+                ("y",), ("V",), t_s, noisy, np.eye(1) * noise**2,
+                (Segment(0.0, 1.0, None, 20.0, name="rest"), Segment(1.0, end_s, None, 20.0)),
                 tones_hz=(TONE_HZ,),
             ),
         )  # fmt: skip
@@ -84,6 +87,7 @@ class LetGo:
             damping.values["rate"] if damping else 0.0,
             step.values["high"] if step else 0.0,
             step.shapes["moment"] if step else 0.0,
+            self.t_s,
         )
 
 
