@@ -54,6 +54,7 @@ def align(
     light[2] = light[3] = light[5] = light[6] = light[7] = 0.0
     robust, damping, settled = 1e9, 1e-6, False
     prior = np.zeros(SHARED)
+    shared = len(prior)  # a number of its type: a constant would be compiled apart
     normals, pulls, parts, counts = accumulate(
         image,
         lens,
@@ -70,7 +71,7 @@ def align(
         origin,
         scale,
         robust,
-        SHARED,
+        shared,
     )
     squares, pixels = parts.sum(), counts.sum()
     for step in range(most_steps):
@@ -111,7 +112,7 @@ def align(
             origin,
             scale,
             limit,
-            SHARED,
+            shared,
         )
         tried_squares, tried_pixels = tried[2].sum(), tried[3].sum()
         # Pixels come and go at the rim: compare means.

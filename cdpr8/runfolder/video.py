@@ -115,7 +115,8 @@ def read_video(path: Path) -> Iterator[tuple[Image, float | None]]:
             for frame in container.decode(container.streams.video[0]):
                 count += 1
                 time = None if frame.pts is None or frame.time_base is None else float(frame.time)
-                yield frame.to_ndarray(format="gray").astype(np.uint8, copy=False), time
+                # Rows without gaps: code compiled for such pictures is not compiled for others.
+                yield np.ascontiguousarray(frame.to_ndarray(format="gray"), dtype=np.uint8), time
         except av.FFmpegError as error:
             if count == 0:
                 raise _not_a_video(path, error) from None

@@ -119,6 +119,7 @@ def test_information_is_none_for_the_same_and_all_for_what_is_far_apart() -> Non
     assert information_bits(apart, weights) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_another_frequency_tells_viscous_from_structural_damping(
     undecided: tuple[RecordedMachine, Diagnosis], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -133,6 +133,7 @@ def test_the_platform_may_stand_in_where_all_cables_are_off() -> None:
     assert square in {k for k, _, _ in common.terms[0].alternatives}
 
 
+@pytest.mark.long
 def test_it_is_told_as_a_proposal_with_units_and_what_to_check(tmp_path: Path) -> None:
     rubbing = ActiveEffect("pulley_coulomb", {"coulomb_n": (0.3, 0.3, 0, 0, 0, 0, 0, 0)})
     run = by_model(tmp_path / "run", [rubbing], SLOW)
@@ -160,6 +161,7 @@ def test_it_is_told_as_a_proposal_with_units_and_what_to_check(tmp_path: Path) -
     assert len(proposals({**named, "verdict": "ambiguous"}, [run], lambda: [run])) == 2
 
 
+@pytest.mark.long
 def test_nothing_is_proposed_where_nothing_is_missing_or_the_camera_is_too_slow(
     tmp_path: Path,
 ) -> None:

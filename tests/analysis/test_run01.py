@@ -55,6 +55,7 @@ def test_it_holds_raw_data_only(run01: Run) -> None:
     assert {node.settings["COF"] for node in run01.start.nodes} == {"024"}
 
 
+@pytest.mark.long
 def test_the_script_makes_it_again(run01: Run, tmp_path: Path) -> None:
     make(tmp_path / "run01")
     for name in ("tension.csv", "frames.csv", "events.csv", "rig.toml", "stop.json"):

@@ -55,6 +55,7 @@ def test_the_rig_file_names_the_run_so_that_compare_warns(
     assert any("fitted to this same run" in text for text in found.warnings)
 
 
+@pytest.mark.long
 def test_a_true_machine_off_by_its_sigmas_is_within_the_stated_sigma(tmp_path: Path) -> None:
     assert _rms(_off(tmp_path, range(3))) < 1.6
 
@@ -108,6 +109,7 @@ def test_a_late_camera_is_told_as_one_lag_of_all(tmp_path: Path) -> None:
     assert not any(one.bias.rubs for one in found.cables)
 
 
+@pytest.mark.long
 def test_runs_of_two_rates_tell_friction_from_damping(tmp_path: Path) -> None:
     effects = [ActiveEffect("cable_viscous", {"viscous_n_s_per_m": 4.0})]
     quick = SLOW.model_copy(update={"frequency_hz": 3.5})

@@ -95,6 +95,7 @@ def test_a_platform_on_cables_that_stick_does_not_ring_up(
     assert np.sqrt(np.mean(too_long**2)) >= np.sqrt(np.mean(missed**2))
 
 
+@pytest.mark.long
 def test_lanes_of_a_fit_do_not_depend_on_what_stands_beside_them(rig: Rig) -> None:
     """What is off in a lane has its states there all the same, which must stay at rest."""
     tasks = [task_with(rig, effect.name) for effect in IN_KERNEL]

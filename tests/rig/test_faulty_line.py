@@ -118,6 +118,7 @@ SWEEPS = pytest.mark.parametrize("sweep", ["polled", "broadcast"])
 
 @SWEEPS
 @pytest.mark.parametrize("parity", ["even", "none"])
+@pytest.mark.long
 def test_minutes_of_a_bad_line_record_nothing_wrong(rig: Rig, parity: str, sweep: str) -> None:
     witness, tally, faults, asked = hours_of_faults(
         with_bus(rig, parity=parity, sweep=sweep), 0.8 / 60, (*FAULTS, "twist"), 30 * PER_BYTE

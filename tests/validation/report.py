@@ -23,7 +23,7 @@ described in at most 150 lines under `tests/validation/`: a linear model, how we
 known, and some ten candidates, most of them wrong. Nothing is named, and no number fitted, by the
 test records; how far a simulation and a law may be trusted (noise, form) was set by hand for each
 description, with these figures in view. `python -m tests.validation.report` writes this page,
-`pytest tests/validation` holds its figures to their bars.
+`./lab test` and `./lab test long` hold its figures to their bars.
 
 | recording | judged by | before | after | published |
 |---|---|---|---|---|

@@ -4,6 +4,8 @@ import pytest
 
 from tests.validation.runs import Run, beyond_published, emps, emps_rmse, published_emps
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def run(recordings: None) -> Run:

@@ -38,6 +38,7 @@ def test_three_decays_of_which_nothing_was_left_out() -> None:
     assert found.verdict == "none"
 
 
+@pytest.mark.long
 def test_the_drag_of_three_decays_with_its_size() -> None:
     found = diagnose(Oscillator({"stiff": 0.02, "drag": 0.5}, 45.0, **LET_GO))
     assert named(found) == {"drag"}
@@ -61,6 +62,7 @@ def test_a_law_that_is_not_in_the_list_is_not_explained() -> None:
     assert found.remains.significant
 
 
+@pytest.mark.long
 def test_hysteresis_is_named() -> None:
     found = diagnose(Oscillator({**OFF, "hysteresis": 12.0, "beta": 30.0}, 40.0))
     assert found.verdict == "explained"

@@ -32,6 +32,7 @@ def test_the_louder_arrow_is_foretold(run: Run) -> None:
     assert run.rmse(run.fitted("cubic").point, "arrow") <= 0.45e-3
 
 
+@pytest.mark.long
 def test_a_wrong_hold_is_named_as_timing_beside_the_spring(held: Run) -> None:
     assert {"cubic", "delay"} <= held.names
     late_s = held.chosen.values["delay", "delay"]

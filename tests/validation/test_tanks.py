@@ -4,6 +4,8 @@ import pytest
 
 from tests.validation.runs import Run, tanks
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def run(recordings: None) -> Run:

@@ -54,6 +54,7 @@ def test_frames_come_while_the_file_grows(recorded, tmp_path):
     assert early > 4, "frames must come before the recording is over"
 
 
+@pytest.mark.long
 def test_following_gives_the_table_of_tracking(recorded, take):
     live = []
     poses = follow_run(recorded, show=live.append, patience_s=0.5)

@@ -61,6 +61,7 @@ def test_sigmas_and_correlations_are_those_of_the_errors(poses, take):
     assert poses[columns].abs().to_numpy().max() <= 1.0
 
 
+@pytest.mark.long
 def test_two_processes_see_what_one_sees(take, packaged_text, tmp_path, monkeypatch):
     images = list(take.images)
     images[40] = images[39].copy()  # repeated just where the second process begins
@@ -186,6 +187,7 @@ def test_a_run_without_video_is_refused(take, packaged_text, tmp_path):
         track_run(load_run(folder))
 
 
+@pytest.mark.long
 def test_a_still_run_or_the_rest_sets_zero(take, packaged, packaged_text, tmp_path):
     folder = write_run(tmp_path / "run", take, packaged_text, take.images[:30], take.times[:30])
     quiet = film(packaged, 8, motion=still, seed=9)
@@ -200,6 +202,7 @@ def test_a_still_run_or_the_rest_sets_zero(take, packaged, packaged_text, tmp_pa
         assert any(words in line for line in notes)
 
 
+@pytest.mark.long
 def test_a_misprinted_plate_is_found_from_the_run_itself(packaged, packaged_text, tmp_path):
     wrong = packaged_text.replace(
         "[plate.grid]", "[plate.grid]  # as printed, the gap is 0.1 mm wider"

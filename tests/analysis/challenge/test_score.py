@@ -191,6 +191,7 @@ def test_what_is_written_tells_the_same(answered: Path, tmp_path: Path) -> None:
     assert (page.parent / "figures" / "proof_confusion.svg").stat().st_size > 1000
 
 
+@pytest.mark.long
 def test_sets_that_were_kept_are_graded_again_together(answered: Path, tmp_path: Path) -> None:
     kept = tmp_path / "sets" / "one.json"
     keep(answered, kept, "abc1234")
