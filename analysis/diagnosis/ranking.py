@@ -6,7 +6,8 @@ import numpy as np
 
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.fitted import Fitted
-from analysis.engine.judge import IMPLAUSIBLE, TEMPER
+from analysis.engine.judge import IMPLAUSIBLE
+from analysis.engine.weights import TEMPER
 
 SHOWN = 12
 """Hypotheses kept."""

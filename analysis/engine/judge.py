@@ -10,38 +10,9 @@ from numpy.typing import NDArray
 from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
 from analysis.engine.doubt import doubt_beside
 from analysis.engine.fitted import Fitted
-from analysis.engine.hypothesis import LOG_ODDS
 from analysis.engine.moved import rise_of
 from analysis.engine.system import Array, Candidate
-
-TEMPER = 2.0
-"""Scores count for less than they say, by this factor: laws are never quite the library's."""
-
-EXACT, TEMPER_EXACT = 0.02, 1.4
-"""Where what the best says is exact, as a number of a rig file or of a camera is, they count for
-less by this alone: where nothing was left out, none has come nearer than 6 to nothing."""
-
-KIN_TEMPER = 4.0
-"""And among laws of one family by this factor more."""
-
-TEMPER_SHARE = 0.1
-"""Or by this share of what there is to explain, times the square of the error of form of the laws
-that explain it: the more there is, the more their form counts."""
-
-MOST_AT_NOISE = 20.0
-"""But by no more than this, where the best comes to the noise: its form has shown to be right."""
-
-OF_LEFT = 3.0
-"""But what leaves ten times as much, squared, as the likeliest is a thousand times less likely,
-however little scores count: their temper has forgiven laws their form, all of them alike."""
-
-MOST_OF_STRAIN = 6.0
-"""And by no more than this of what parameters cost that are far from what is known of them: no
-error of form makes that likelier."""
-
-SIMPLER, MOST_SHAPES = 0.7, 2
-"""Of laws of one family, each number of shape takes this off the logarithm of odds, up to so many:
-where a hose is tied on makes it no other law."""
+from analysis.engine.weights import TEMPER_EXACT, weights_of
 
 NEGLIGIBLE, STANDS_OUT = 0.02, 15.0
 """A magnitude below this share of its usual size is nothing, unless with it the score is so much
@@ -168,17 +139,7 @@ def judge(
         if moved and len(one.hypothesis.names) == 1 and one.hypothesis.names[0] in moved:
             rise = rise_of(moved[one.hypothesis.names[0]], TEMPER_EXACT)
             scores[i] = max(scores[i], nothing + rise)
-    best = fitted[int(np.argmax(scores))]
-    form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
-    least = TEMPER_EXACT if form < EXACT else TEMPER
-    temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
-    if settled:
-        temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
-    elif best.left < noise:
-        temper = min(temper, MOST_AT_NOISE)
-        scores = _strained(scores, fitted, temper)
-    scores = _among_kin(scores, fitted, candidates, temper)
-    weights = _weights(scores, fitted, temper, settled=settled)
+    weights = weights_of(scores, fitted, candidates, nothing, noise, settled=settled)
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )
@@ -253,58 +214,10 @@ def doubt_of(
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
 
 
-def _weights(scores: Array, fitted: Sequence[Fitted], temper: float, *, settled: bool) -> Array:
-    """Probabilities of hypotheses whose scores count for less, by a temper."""
-    # However little scores count, one cause more is no likelier beforehand.
-    causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
-    first = int(np.argmax(scores))
-    logs = (scores - scores[first]) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
-    if settled:
-        logs = np.minimum(logs, logs[first] - _more_left(fitted, fitted[first]))
-    weights = np.exp(logs - logs.max())
-    return np.asarray(weights / weights.sum())
-
-
-def _more_left(fitted: Sequence[Fitted], best: Fitted) -> Array:
-    """By how much less likely each is than the best, for what more it leaves, as a logarithm."""
-    left = np.array([max(one.left, 1.0) if np.isfinite(one.left) else np.inf for one in fitted])
-    return np.asarray(OF_LEFT * np.log(np.maximum(left / max(best.left, 1.0), 1.0)))
-
-
 def _any_would_do(chosen: Fitted, candidate: Candidate) -> float:
     """The probability that a cause was chosen for what it can take up, and not for being there."""
     picked = bool(candidate.chosen_terms) and chosen.hypothesis.parts[candidate.name].free > MANY
     return ELSE if picked else 0.0
-
-
-def _strained(scores: Array, fitted: Sequence[Fitted], temper: float) -> Array:
-    """Scores in which parameters that are bent count for more, where the others count for less."""
-    strain = np.array([0.5 * float(one.point.nuisance @ one.point.nuisance) for one in fitted])
-    return scores - strain * max(temper / MOST_OF_STRAIN - 1.0, 0.0)
-
-
-def _among_kin(
-    scores: Array,
-    fitted: Sequence[Fitted],
-    candidates: Mapping[str, Candidate],
-    temper: float,
-) -> Array:
-    """Scores in which laws of one family differ by less: none of them is the true one."""
-    groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
-    for i, one in enumerate(fitted):
-        names = (candidates[name].kind for name in one.hypothesis.names)
-        groups[tuple(sorted(names))].append(i)
-    found = scores.copy()
-    for places in groups.values():
-        best = scores[places].max()
-        if np.isfinite(best) and len(places) > 1:
-            shapes = [
-                sum(len(candidates[name].shapes_of(())) for name in fitted[i].hypothesis.names)
-                for i in places
-            ]
-            more = np.minimum(np.array(shapes) - min(shapes), MOST_SHAPES)
-            found[places] = best - (best - scores[places]) / KIN_TEMPER - temper * SIMPLER * more
-    return found
 
 
 def _idle(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from analysis.diagnosis import nuisances, schema
 from analysis.diagnosis.candidates import LAW, LINEAR, NUMBER
-from analysis.engine import evidence, hypothesis, judge, locate
+from analysis.engine import evidence, hypothesis, judge, locate, weights
 
 TEXT = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text(encoding="utf-8")
 
@@ -18,7 +18,7 @@ def test_its_numbers_are_those_of_the_code() -> None:
     assert len(evidence.FORM_SIZES) == 5
     assert f"one in {round(exp(-hypothesis.LOG_ODDS), -1):.0f} for any effect" in TEXT
     assert "Scores are halved" in TEXT
-    assert judge.TEMPER == 2.0
+    assert weights.TEMPER == 2.0
     assert "less than one case of a hundred" in TEXT
     assert locate.SIGNIFICANT == 0.01
     assert "at least nine in ten" in TEXT

@@ -166,6 +166,23 @@ def test_of_kin_the_one_that_comes_to_the_noise_is_named_however_much_there_is_t
         assert (cause.rivals == ()) == alone
 
 
+@pytest.mark.parametrize(("left", "second"), [(1.05, False), (1.3, True)])
+def test_a_second_cause_that_alone_leads_to_the_noise_is_there_however_much_the_first_explains(
+    refiner: Refiner, left: float, second: bool
+) -> None:
+    # So far ahead that of itself it would not count: by the form of the first it is a little.
+    on = Hypothesis({"damping": Part(("rate",)), "step": Part(("high",), shapes={"moment": 4.0})})
+    both = State.at(on, {("damping", "rate"): 0.2, ("step", "high"): 1.0}, CANDIDATES)
+    found = [
+        fitted(refiner, both, -100.0, 1.01),
+        fitted(refiner, state_of(DAMPING, 0.2), -210.0, left),
+        fitted(refiner, None, -1e5, 600.0),
+    ]
+    causes = judge(found, CANDIDATES).causes
+    assert [one.name for one in causes] == ["damping", "step"][: 1 + second]
+    assert not second or causes[1].present > CERTAIN
+
+
 @pytest.mark.parametrize(("sigmas", "named"), [(2.5, False), (3.5, True), (6.0, True)])
 def test_a_number_that_moved_by_more_than_three_sigmas_is_named_however_many_there_are(
     refiner: Refiner, sigmas: float, named: bool

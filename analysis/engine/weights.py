@@ -1,0 +1,158 @@
+"""How likely each hypothesis is: scores count for less than they say, for laws are not exact."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from analysis.engine.faint import FORMS
+from analysis.engine.fitted import Fitted
+from analysis.engine.hypothesis import LOG_ODDS, Hypothesis
+from analysis.engine.system import Array, Candidate
+
+TEMPER = 2.0
+"""Scores count for less than they say, by this factor: laws are never quite the library's."""
+
+EXACT, TEMPER_EXACT = 0.02, 1.4
+"""Where what the best says is exact, as a number of a rig file or of a camera is, they count for
+less by this alone: where nothing was left out, none has come nearer than 6 to nothing."""
+
+KIN_TEMPER = 4.0
+"""And among laws of one family by this factor more."""
+
+TEMPER_SHARE = 0.1
+"""Or by this share of what there is to explain, times the square of the error of form of the laws
+that explain it: the more there is, the more their form counts."""
+
+MOST_AT_NOISE = 20.0
+"""But by no more than this, where the best comes to the noise: its form has shown to be right."""
+
+OF_LEFT = 3.0
+"""But what leaves ten times as much, squared, as the likeliest is a thousand times less likely,
+however little scores count: their temper has forgiven laws their form, all of them alike."""
+
+MOST_OF_STRAIN = 6.0
+"""And by no more than this of what parameters cost that are far from what is known of them: no
+error of form makes that likelier."""
+
+SIMPLER, MOST_SHAPES = 0.7, 2
+"""Of laws of one family, each number of shape takes this off the logarithm of odds, up to so many:
+where a hose is tied on makes it no other law."""
+
+
+def weights_of(
+    scores: Array,
+    fitted: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
+    nothing: float,
+    noise: float,
+    *,
+    settled: bool,
+) -> Array:
+    """Probabilities of hypotheses, shape (h,).
+
+    Parameters
+    ----------
+    scores
+        Of each; minus infinity where it is out of the question, shape (h,).
+    fitted, candidates
+        Hypotheses, and what can be on, by name.
+    nothing
+        The score of nothing left out.
+    noise
+        The squared misfit of a sample that noise leaves.
+    settled
+        See `judge`.
+    """
+    best = fitted[int(np.argmax(scores))]
+    form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
+    least = TEMPER_EXACT if form < EXACT else TEMPER
+    temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
+    if settled:
+        temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
+    elif best.left < noise:
+        temper = min(temper, MOST_AT_NOISE)
+        scores = _strained(scores, fitted, temper)
+    scores = _among_kin(scores, fitted, candidates, temper)
+    # However little scores count, one cause more is no likelier beforehand.
+    causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
+    first = int(np.argmax(scores))
+    logs = (scores - scores[first]) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
+    if not settled:
+        logs = np.minimum(logs, logs[first] + _by_chance(fitted, fitted[first], candidates, noise))
+    else:
+        logs = np.minimum(logs, logs[first] - _more_left(fitted, fitted[first]))
+    weights = np.exp(logs - logs.max())
+    return np.asarray(weights / weights.sum())
+
+
+def _by_chance(
+    fitted: Sequence[Fitted], best: Fitted, candidates: Mapping[str, Candidate], noise: float
+) -> Array:
+    """How likely each can be at most, as a logarithm, that has a cause less than the best.
+
+    Where the best comes to the noise, and without one of its causes more than that is left, an
+    error of form had to be of the shape of that cause. It lies in any of `FORMS` directions, of
+    unknown size: all but a share s of it is in k of them with a probability of s^((FORMS - k) / 2).
+
+    Parameters
+    ----------
+    fitted, best, candidates
+        Hypotheses, the likeliest, and what can be on.
+    noise
+        The squared misfit of a sample that noise leaves.
+    """
+    found = np.full(len(fitted), np.inf)
+    if not best.left < noise:
+        return found
+    for i, one in enumerate(fitted):
+        fewer = set(one.hypothesis.names)
+        if not (fewer and fewer < set(best.hypothesis.names) and one.left > noise):
+            continue
+        share = (max(best.left, 1.0) + noise - 2.0) / (one.left + noise - 2.0)
+        numbers = _numbers(best.hypothesis) - _numbers(one.hypothesis)
+        chance = 0.5 * max(FORMS - numbers, 0) * float(np.log(share))
+        more = best.hypothesis.log_prior(candidates) - one.hypothesis.log_prior(candidates)
+        found[i] = chance - more
+    return found
+
+
+def _numbers(hypothesis: Hypothesis) -> int:
+    """How many magnitudes are free."""
+    return sum(part.free for part in hypothesis.parts.values())
+
+
+def _more_left(fitted: Sequence[Fitted], best: Fitted) -> Array:
+    """By how much less likely each is than the best, for what more it leaves, as a logarithm."""
+    left = np.array([max(one.left, 1.0) if np.isfinite(one.left) else np.inf for one in fitted])
+    return np.asarray(OF_LEFT * np.log(np.maximum(left / max(best.left, 1.0), 1.0)))
+
+
+def _strained(scores: Array, fitted: Sequence[Fitted], temper: float) -> Array:
+    """Scores in which parameters that are bent count for more, where the others count for less."""
+    strain = np.array([0.5 * float(one.point.nuisance @ one.point.nuisance) for one in fitted])
+    return scores - strain * max(temper / MOST_OF_STRAIN - 1.0, 0.0)
+
+
+def _among_kin(
+    scores: Array,
+    fitted: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
+    temper: float,
+) -> Array:
+    """Scores in which laws of one family differ by less: none of them is the true one."""
+    groups: dict[tuple[str, ...], list[int]] = defaultdict(list)
+    for i, one in enumerate(fitted):
+        names = (candidates[name].kind for name in one.hypothesis.names)
+        groups[tuple(sorted(names))].append(i)
+    found = scores.copy()
+    for places in groups.values():
+        best = scores[places].max()
+        if np.isfinite(best) and len(places) > 1:
+            shapes = [
+                sum(len(candidates[name].shapes_of(())) for name in fitted[i].hypothesis.names)
+                for i in places
+            ]
+            more = np.minimum(np.array(shapes) - min(shapes), MOST_SHAPES)
+            found[places] = best - (best - scores[places]) / KIN_TEMPER - temper * SIMPLER * more
+    return found
