@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from analysis.engine.differences import differences
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
+from analysis.engine.part import has_several
 from analysis.engine.ring_samples import Samples
 from analysis.engine.step import Stepper
 from analysis.engine.system import Array
@@ -51,9 +52,10 @@ of it;"""
 WORTH_ON_THE_WAY = 0.003
 """or, in a window that is not the last, than this share of it."""
 
-HOPELESS = 20.0
+HOPELESS, HOPELESS_OF_SEVERAL = 20.0, 6.0
 """What costs so many times more than another hypothesis, after all that differences promised, is
-not led on with fresh ones."""
+not led on with fresh ones: of one recording, and of several, where they take as many times as long
+and one hypothesis was led through all of them already."""
 
 CATCHES_UP = 0.1
 """Nor one of what lies behind another hypothesis that promises less than this share of the gap."""
@@ -217,7 +219,8 @@ class Way:
         if near or not float(here @ here) < lost * len(here):
             return False
         if self._columns is None:
-            hopeless = self._last is not None and self.cost(share) > HOPELESS * best
+            most = HOPELESS_OF_SEVERAL if has_several(self._samples.system) else HOPELESS
+            hopeless = self._last is not None and self.cost(share) > most * best
             if self._settled or hopeless:
                 return False
             self._differences()
