@@ -14,7 +14,7 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 
-LONG = ("analysis/challenge", "vision", "validation", "analysis")
+FIRST = ("analysis/challenge", "vision", "validation", "analysis")
 """Folders whose modules take longest."""
 
 WAITS = "rig"
@@ -27,7 +27,7 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Modules of `LONG` first, and those that wait spread among the others."""
+    """Modules of `FIRST` first, and those that wait spread among the others."""
     here = Path(__file__).parent
     modules: dict[str, list[pytest.Item]] = {}
     for item in items:
@@ -38,8 +38,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def _place(name: str) -> int:
-    """Where a module's folder stands in `LONG`; behind all of them, where it does not."""
-    return next((i for i, folder in enumerate(LONG) if name.startswith(folder)), len(LONG))
+    """Where a module's folder stands in `FIRST`; behind all of them, where it does not."""
+    return next((i for i, folder in enumerate(FIRST) if name.startswith(folder)), len(FIRST))
 
 
 def _spread(*kinds: list[str]) -> list[str]:

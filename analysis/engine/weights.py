@@ -78,10 +78,11 @@ def weights_of(
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
     first = int(np.argmax(scores))
     logs = (scores - scores[first]) / temper + LOG_ODDS * causes_on * (1.0 - 1.0 / temper)
-    if not settled:
-        logs = np.minimum(logs, logs[first] + _by_chance(fitted, fitted[first], candidates, noise))
+    if settled:
+        most = -_more_left(fitted, fitted[first])
     else:
-        logs = np.minimum(logs, logs[first] - _more_left(fitted, fitted[first]))
+        most = _by_chance(fitted, fitted[first], candidates, noise)
+    logs = np.minimum(logs, logs[first] + most)
     weights = np.exp(logs - logs.max())
     return np.asarray(weights / weights.sum())
 
@@ -89,7 +90,9 @@ def weights_of(
 def _by_chance(
     fitted: Sequence[Fitted], best: Fitted, candidates: Mapping[str, Candidate], noise: float
 ) -> Array:
-    """How likely each can be at most, as a logarithm, that has a cause less than the best.
+    """By how much likelier than the best each can be at most, as a logarithm, shape (h,).
+
+    That is of those that have a cause less than the best; infinity for all others.
 
     Where the best comes to the noise, and without one of its causes more than that is left, an
     error of form had to be of the shape of that cause. It lies in any of `FORMS` directions, of

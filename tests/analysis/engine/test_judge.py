@@ -170,7 +170,7 @@ def test_of_kin_the_one_that_comes_to_the_noise_is_named_however_much_there_is_t
 def test_a_second_cause_that_alone_leads_to_the_noise_is_there_however_much_the_first_explains(
     refiner: Refiner, left: float, second: bool
 ) -> None:
-    # So far ahead that of itself it would not count: by the form of the first it is a little.
+    # It is 110 ahead, and that counts a twentieth here: the form of the first could be so wrong.
     on = Hypothesis({"damping": Part(("rate",)), "step": Part(("high",), shapes={"moment": 4.0})})
     both = State.at(on, {("damping", "rate"): 0.2, ("step", "high"): 1.0}, CANDIDATES)
     found = [
