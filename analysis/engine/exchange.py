@@ -70,14 +70,15 @@ def exchanged(found: Faint, candidates: Mapping[str, Candidate]) -> list[Exchang
     for name in on:
         if candidates[name].fixed:
             continue
-        screen = without(found, candidates, name)
+        # Its own kin is led from where it came to.
+        family, screen = candidates[name].family, without(found, candidates, name)
         itself, nothing = _itself(found, candidates, name), screen.null()
         explains = itself.log_score - nothing.log_score
         if explains < BEHIND:
             continue
         least = itself.log_score - max(BEHIND, (1.0 - NEARLY) * explains)
         for other in dict.fromkeys(one for one, _ in found.terms):
-            if other in on:
+            if other in on or (family and candidates[other].family == family):
                 continue
             one = screen.best_of(other)
             if one is not None and one.log_score > least:

@@ -92,6 +92,10 @@ class Faint:
     rotation: Array
     seen: _Seen
 
+    def to_lead_from(self) -> "Faint":
+        """Without what is kept of all samples for what is near, which may be much."""
+        return replace(self, seen=replace(self.seen, changes={}))
+
 
 def faint(
     system: System,

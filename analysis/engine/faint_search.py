@@ -84,6 +84,14 @@ def others_beside(refiner: Refiner, led: Followed) -> list[Candidate]:
     ]
 
 
+def kin_beside(refiner: Refiner, led: Followed) -> list[Candidate]:
+    """Second laws of one thing, beside what is on: what another cause on may stand for."""
+    on = [refiner.candidates[name] for name in led.names]
+    families = {one.family for one in on} - {""}
+    kin = (one for one in refiner.candidates.values() if one.family in families)
+    return [one for one in kin if one not in on]
+
+
 def one_more(found: Faint, refiner: Refiner, explains: float = 0.0) -> list[Scored]:
     """One cause more than is on, where the ring promises something, the best first.
 

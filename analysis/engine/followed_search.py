@@ -206,6 +206,14 @@ class FollowedSearch(ToldLeader):
 
     def _lead_beside(self) -> None:
         """From the best on: rivals, one cause more, one less."""
+        self._lead_from_best()
+        if not self.ended and self._lead_waiting():
+            self._lead_from_best()
+        for one in self._as_close():
+            self._one_less(one)
+
+    def _lead_from_best(self) -> None:
+        """Rivals of the best, and one cause more, until neither leads farther."""
         for _ in range(self._most_causes):
             self._one_less(self._best)
             waiting = not self._lead_rivals()
@@ -220,8 +228,6 @@ class FollowedSearch(ToldLeader):
                 self._lead_rivals(last=True)
             if self._best is best and not (self._lead_elsewhere() or self._spares()):
                 break
-        for one in self._as_close():
-            self._one_less(one)
 
     def _spares(self) -> bool:
         """Whether more is tried, however much it took to come close to the noise: once.

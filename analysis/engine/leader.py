@@ -14,8 +14,9 @@ from analysis.engine.all_samples import (
     shown_the_way,
 )
 from analysis.engine.cycles import tuned
+from analysis.engine.exchange import Exchange
 from analysis.engine.faint import Faint, faint
-from analysis.engine.faint_search import others_beside
+from analysis.engine.faint_search import kin_beside, others_beside
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
@@ -88,6 +89,7 @@ class Leader:
         self._effort = 0.0
         self._asked: Faint | None = None
         self._exchanged: set[tuple[str, ...]] = set()
+        self._waiting: dict[tuple[str, ...], tuple[Faint, list[Exchange]]] = {}
         self._placed: set[tuple[object, ...]] = set()
         self._misplaced: set[tuple[str, ...]] = set()
         self._fewer: list[Followed] = []
@@ -184,6 +186,8 @@ class Leader:
         if known is None or known.nuisance is not there.nuisance or known.state is not there.state:
             on = [self._refiner.candidates[name] for name in about.names]
             asked = [*others_beside(self._refiner, about), *(one for one in on if is_placed(one))]
+            if len(on) > 1 and there.to_end and there.left < noise_of(self._system):
+                asked += kin_beside(self._refiner, about)
             self._asked = faint(self._system, about, asked, near=self._asked)
         assert self._asked is not None
         return self._asked

@@ -152,7 +152,7 @@ class MoreLeader(RivalLeader):
             # However much was tried: a second cause may stand for what the first had not been.
             tried = whole.names, state.hypothesis.names
             needed = cost_of(whole) > self._needed.get(tried, np.inf) - BEHIND
-            if state.hypothesis.names in known or needed:
+            if state.hypothesis.names in known or needed or self._is_told(state, close):
                 continue
             fewer = lead_from(self._system, whole, state)
             self._keep(fewer)
@@ -162,6 +162,12 @@ class MoreLeader(RivalLeader):
             if cost_of(fewer) < close:
                 self._lead_kin(fewer)
                 self._one_less(fewer)
+
+    def _is_told(self, state: State, most: float) -> bool:
+        """Whether it came to the same, which costs more than so much, from two places."""
+        names = state.hypothesis.names
+        costs = sorted(cost_of(one) for one in self._led if one.to_end and one.names == names)
+        return len(costs) > 1 and costs[0] > most and costs[1] < costs[0] + 2.0 * BEHIND
 
     def _as_close(self) -> list[Followed]:
         """What came about as close as the best with two causes or more, the closest first.

@@ -196,7 +196,9 @@ class RivalLeader(Leader):
             self._lead_everywhere()
             self._lead_through()
             plain = plainest(self._led, cost_of(self._best) + WORTH_IT, candidates)
-            if plain is None or plain.names in self._exchanged or self._effort > self._most:
+            # However much was tried: beside what explains to the noise little is to be led.
+            spent = self._effort > self._most and not (plain and plain.left < NOISE)
+            if plain is None or plain.names in self._exchanged or spent:
                 break
             # At the end strained parameters tell what they make up for.
             end = plain if plain.about is None else replace(plain, about=None)
@@ -204,8 +206,27 @@ class RivalLeader(Leader):
             promised = fresh(exchanged(asked, candidates), self._in_place)
             waits = plain is self._best and plain.left < NOISE and not last
             if waits and promised and most_promised(asked, self._refiner) > promised[0].ahead:
+                self._waiting[plain.names] = asked.to_lead_from(), promised
                 return False
             self._exchanged.add(plain.names)
+            self._waiting.pop(plain.names, None)
             for one in rivals(self._system, asked, candidates, promised):
                 self._keep(one)
         return True
+
+    def _lead_waiting(self) -> bool:
+        """Rivals that waited, where they promise to come close to the best; whether one leads.
+
+        One cause more may have come far beside a wrong law: what another law puts right is not to
+        be made up for by a cause more.
+        """
+        before = self._best
+        waiting, self._waiting = self._waiting, {}
+        for names, (asked, promised) in waiting.items():
+            self._exchanged.add(names)
+            behind = (cost_of(asked.followed) - cost_of(before) - CLOSE) / 2.0
+            least = max(behind / float(asked.problem.base.mean()), 0.0)
+            ahead = fresh([one for one in promised if one.ahead > least], self._in_place)
+            for one in rivals(self._system, asked, self._refiner.candidates, ahead):
+                self._keep(one)
+        return cost_of(self._best) < cost_of(before) - WORTH_IT
