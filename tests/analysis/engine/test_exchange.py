@@ -9,8 +9,9 @@ import pytest
 
 from analysis.engine import exchange, rival_leader
 from analysis.engine.all_samples import cost_of
-from analysis.engine.exchange import exchanged, fresh, plainest, rivals
+from analysis.engine.exchange import Exchange, exchanged, fresh, plainest, rivals
 from analysis.engine.faint import Faint, faint
+from analysis.engine.faint_search import kin_beside, others_beside
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
@@ -174,6 +175,51 @@ def test_rivals_of_what_explains_to_the_noise_wait_for_one_cause_more(
     assert found is not None
     assert found[0].hypothesis.names == (("raised", "true") if more else ("true",))
     assert order[0] == found[0].hypothesis.names
+
+
+@pytest.mark.parametrize("close", [True, False])
+def test_rivals_that_waited_are_led_where_they_promise_to_come_close(
+    monkeypatch: pytest.MonkeyPatch, close: bool
+) -> None:
+    """One cause more may have come far beside a wrong law."""
+    system = _Straight(TRUE, NEAR, RAISED, raised=1.0)
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    asked: list[tuple[str, ...]] = []
+
+    def led(
+        _: object, found: Faint, __: object, promised: Sequence[Exchange]
+    ) -> Iterator[Followed]:
+        asked.extend(one.scored.hypothesis.names for one in promised)
+        return iter(())
+
+    monkeypatch.setattr(rival_leader, "rivals", led)
+    monkeypatch.setattr(rival_leader, "CLOSE", 1e4 if close else 0.0)
+    nothing = replace(follow_ring(system, np.zeros(1), everything=True), lends=None)
+    search = FollowedSearch(refiner, nothing, 2)
+    known = {one.name: one for one in system.candidates}
+    state = State.at(Hypothesis({"near": Part(("size",))}), {("near", "size"): 1.0}, known)
+    search.follow([Guess(state, np.zeros(1))], [])
+    assert (("true",) in asked) == close
+
+
+def test_a_second_law_of_one_thing_is_asked_in_the_place_of_another_second_cause() -> None:
+    """Not in the place of its own kin, which is led from where that came."""
+    losses = (replace(one, family="loss") for one in (OTHER, TRUE, BENT))
+    system = _Straight(*losses, RAISED)
+    known = {one.name: one for one in system.candidates}
+    hypothesis = Hypothesis({"other": Part(("size",)), "raised": Part(("size",))})
+    state = State.at(hypothesis, {("other", "size"): 0.1, ("raised", "size"): 1.0}, known)
+    led = Followed(np.zeros(1), state, misfit=200.0, costs={1.0: 200.0})
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    kin = kin_beside(refiner, led)
+    assert {one.name for one in kin} == {"true", "bent"}
+    assert not {one.name for one in others_beside(refiner, led)} & {"true", "bent"}
+    promised = exchanged(faint(system, led, kin), known)
+    for one in promised:
+        assert "other" in one.scored.hypothesis.names, "its kin stands in no place of it"
+    assert ("bent", "other") in {one.scored.hypothesis.names for one in promised}
 
 
 def test_of_what_comes_as_far_the_fewest_causes_are_asked() -> None:
