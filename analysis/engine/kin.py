@@ -199,7 +199,9 @@ def kin_left(
             yield kin
 
 
-def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed:
+def part_of_the_way(
+    samples: Samples, best: Followed, far: Followed, share: float = 1.0
+) -> Followed:
     """So much of what straight lines promise as leaves least.
 
     Parameters
@@ -210,12 +212,15 @@ def part_of_the_way(samples: Samples, best: Followed, far: Followed) -> Followed
         Led to the end.
     far
         With one cause more, where straight lines about the best say.
+    share
+        Of the time, over which they say so.
     """
     assert far.state is not None
     tried = [far]
-    for share in SHARES:
-        nuisance = best.nuisance + share * (far.nuisance - best.nuisance)
-        tried.append(Followed(nuisance, far.state.nearer(best.state, share)))
-    left = samples.residuals([one.point for one in tried])
+    for part in SHARES:
+        nuisance = best.nuisance + part * (far.nuisance - best.nuisance)
+        tried.append(Followed(nuisance, far.state.nearer(best.state, part)))
+    left = samples.residuals([one.point for one in tried], share)
+    left = [one[samples.shares <= share] for one in left]
     costs = [found @ found + one.strain for found, one in zip(left, tried, strict=True)]
     return tried[int(np.argmin(costs))]

@@ -16,6 +16,7 @@ from analysis.engine.faint_search import eased_by, nuisances_of, one_more, promi
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import lead_from, lead_instead, part_of_the_way
+from analysis.engine.leader import ARRIVED
 from analysis.engine.ring_fit import BEHIND, FAR
 from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
@@ -36,6 +37,9 @@ CLOSE = 60.0
 
 AS_CLOSE = 6
 """So many of several causes are led without each of these."""
+
+STRETCHES = 40
+"""How closely it is told up to where a beginning leads."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -75,10 +79,16 @@ class MoreLeader(RivalLeader):
 
         def lead(scored: Scored) -> Followed:
             start = Followed(nuisances_of(found, scored), State.of(scored, refiner.candidates))
+            passed = 0.0
             if best.to_end:
                 start = part_of_the_way(self._samples, best, start)
+            else:
+                share = found.followed.telling
+                start = part_of_the_way(self._samples, found.followed, start, share)
+                # Over a shorter stretch it may come to nothing, and be lost there.
+                passed = self._led_until(start, share)
             assert start.state is not None
-            self._lead(start.nuisance, start.state, near=best.to_end)
+            self._lead(start.nuisance, start.state, near=best.to_end, passed=passed)
             return self._led[-1]
 
         known = {one.names for one in self._led}
@@ -97,6 +107,13 @@ class MoreLeader(RivalLeader):
                 self._lead_like(tried[kind], scored, best.names)
         self._lead_abreast(best, tried[kind])
         return True
+
+    def _led_until(self, start: Followed, most: float) -> float:
+        """Up to which share of the time, of so much, a beginning leaves little more than noise."""
+        (left,) = self._samples.residuals([start.point], most)
+        shares = np.linspace(0.0, most, STRETCHES + 1)[1:]
+        means = (np.mean(left[self._samples.shares <= one] ** 2) for one in shares)
+        return max((x for x, one in zip(shares, means, strict=True) if one < ARRIVED), default=0.0)
 
     def _lead_abreast(self, before: Followed, after: Followed) -> None:
         """What had come as close as what one cause more was led beside is led with that as well."""

@@ -85,7 +85,7 @@ def follow_ring(
     """
     samples = Samples(system, held=held, everything=everything)
     way = Way(samples, Followed(nuisance, state), lent, known)
-    costs: dict[float, float] = {}
+    costs = {one: way.cost(one) for one in WINDOWS if one <= passed}
     share = passed
     came: Followed | None = None
     about: Followed | None = None

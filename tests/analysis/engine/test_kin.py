@@ -150,10 +150,10 @@ class _Bent:
     nuisances = (Nuisance("level", 1.0, "V"),)
     candidates = (ELSEWHERE,)
 
-    def __init__(self) -> None:
+    def __init__(self, later: float = 0.9) -> None:
         times = np.arange(0.0, 1.0, 0.01)
         whole = (Segment(0.0, 1.0, None, 20.0),)
-        value = np.full((100, 1), 0.9)
+        value = np.where(times < 0.5, 0.9, later)[:, None]
         self.bundles = (Bundle(("y",), ("V",), times, value, np.eye(1) * 1e-4, whole),)
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
@@ -177,6 +177,19 @@ def test_where_straight_lines_promise_too_much_less_of_it_is_begun_with() -> Non
     assert begun.state is not None
     assert begun.state.values[0] == pytest.approx(0.05 * 5.0)
     assert begun.nuisance[0] == pytest.approx(0.405)
+
+
+def test_where_they_promise_over_a_first_part_what_comes_after_it_does_not_count() -> None:
+    system = _Bent(later=0.4)
+    state = State.at(
+        Hypothesis({"elsewhere": Part(("size@4",), False, {})}),
+        {("elsewhere", "size@4"): 0.7},
+        {"elsewhere": ELSEWHERE},
+    )
+    far, best = Followed(np.array([0.5]), state), Followed(np.array([0.4]), None)
+    whole, first = (part_of_the_way(Samples(system), best, far, one) for one in (1.0, 0.45))
+    assert first is far
+    assert whole is not far
 
 
 LONGER = Candidate(

@@ -120,6 +120,18 @@ def test_a_faint_ring_two_turns_out_of_phase_is_followed_too(noise: float) -> No
     assert found.nuisance[0] == pytest.approx(2.0, abs=0.05)
 
 
+def test_what_was_led_over_a_first_part_has_come_as_far_as_that() -> None:
+    """Though it is lost before the next stretch: else what begins nowhere would count for more."""
+    late = 5.0 * np.sin(2.0 * np.pi * 1.1 * TONE_HZ * T_S)[:, None] * (T_S[:, None] > 3.0)
+    system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0) + late)
+    found = follow_ring(system, np.array([2.0]), passed=0.14)
+    assert not found.to_end
+    share, cost = found.reached
+    assert share == 0.12, "the last of the stretches that lie in it"
+    inside = int((T_S <= 0.12 * 20.0).sum())
+    assert cost == pytest.approx(inside, rel=0.3)
+
+
 def test_out_of_patience_what_is_stuck_above_the_noise_is_not_led_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
