@@ -114,7 +114,7 @@ def most_promised(found: Faint, refiner: Refiner) -> float:
 
 def promised_by(found: Faint, refiner: Refiner, scored: Scored) -> float:
     """By how much the squared misfit is promised to fall with one cause more than is on."""
-    screen = _about(found, refiner)
+    screen = screen_about(found, refiner.candidates)
     nothing, known = screen.null(), refiner.candidates
     before = nothing.log_score - screen.on.log_prior(known)
     after = scored.log_score - scored.hypothesis.log_prior(known)
@@ -127,7 +127,9 @@ def eased_by(found: Faint, refiner: Refiner, scored: Scored) -> float:
     What is on may not have come to where they are likeliest: what they would cost less without any
     cause is none's.
     """
-    on, more = (nuisances_of(found, one) for one in (_about(found, refiner).null(), scored))
+    on, more = (
+        nuisances_of(found, one) for one in (screen_about(found, refiner.candidates).null(), scored)
+    )
     return float(on @ on - more @ more)
 
 
@@ -136,7 +138,7 @@ def _promises(found: Faint, refiner: Refiner, explains: float) -> tuple[float, l
     asked = {name for name, _ in found.terms}
     beside = others_beside(refiner, found.followed)
     chosen = {one.name: one for one in beside if one.name in asked}
-    screen = _about(found, refiner)
+    screen = screen_about(found, refiner.candidates)
     nothing = screen.null().log_score
     least = nothing + ASKS + explains * _beyond_noise(found)
     best = [one for one in _best(screen, chosen, screen.on) if one.log_score > least]
@@ -146,13 +148,13 @@ def _promises(found: Faint, refiner: Refiner, explains: float) -> tuple[float, l
     return nothing, best
 
 
-def _about(found: Faint, refiner: Refiner) -> Screen:
+def screen_about(found: Faint, candidates: Mapping[str, Candidate]) -> Screen:
     """What is on, which may still move, and what could be beside it."""
     state = found.followed.state
     on = Hypothesis() if state is None else state.hypothesis
     return Screen(
         found.problem,
-        refiner.candidates,
+        candidates,
         found.terms,
         on=on,
         done={name: np.zeros(len(found.problem.residual)) for name in on.names},

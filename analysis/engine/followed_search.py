@@ -218,6 +218,7 @@ class FollowedSearch(ToldLeader):
             self._one_less(self._best)
             waiting = not self._lead_rivals()
             self._lead_freed()
+            self._lead_whole()
             best = self._best
             more = self._one_more()
             if self._is_enough():

@@ -97,6 +97,7 @@ class Leader:
         self._everywhere: set[tuple[str, tuple[str, ...]]] = set()
         self._anew: set[tuple[str, ...]] = set()
         self._asked_more = False
+        self._asked_whole: set[tuple[str, ...]] = set()
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
     @property

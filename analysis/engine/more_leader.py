@@ -1,6 +1,7 @@
 """One cause more beside what was led to the ring's phase, and one less."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,10 +18,13 @@ from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import lead_from, lead_instead, part_of_the_way
 from analysis.engine.leader import ARRIVED
+from analysis.engine.part import has_several
 from analysis.engine.ring_fit import BEHIND, FAR
 from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
+from analysis.engine.way import STRAIN
+from analysis.engine.whole import whole_beside
 
 MORE = 2
 """Beside the best that was led to the phase, one cause more is tried, of so many kinds."""
@@ -108,10 +112,26 @@ class MoreLeader(RivalLeader):
         self._lead_abreast(best, tried[kind])
         return True
 
+    def _lead_whole(self) -> None:
+        """What is there as a whole is led beside the best, where parameters may be hiding it.
+
+        Once beside each, and of one recording: there every pilot does so.
+        """
+        best = self._best
+        room = len(best.names) < self._most_causes and not has_several(self._system)
+        if not (room and self._explains(best) and best.strain > STRAIN):
+            return
+        if best.names not in self._asked_whole:
+            self._asked_whole.add(best.names)
+            found = self._faint(replace(best, about=None))
+            for one in whole_beside(self._system, self._refiner.candidates, found):
+                self._keep(one)
+
     def _led_until(self, start: Followed, most: float) -> float:
         """Up to which share of the time, of so much, a beginning leaves little more than noise."""
         (left,) = self._samples.residuals([start.point], most)
-        shares = np.linspace(0.0, most, STRETCHES + 1)[1:]
+        shares = np.linspace(0.0, most, STRETCHES + 1)
+        shares = shares[shares >= self._samples.shares.min()]
         means = (np.mean(left[self._samples.shares <= one] ** 2) for one in shares)
         return max((x for x, one in zip(shares, means, strict=True) if one < ARRIVED), default=0.0)
 

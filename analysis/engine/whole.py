@@ -14,7 +14,7 @@ import numpy as np
 
 from analysis.engine.all_samples import WORTH_IT, cost_of
 from analysis.engine.faint import Faint
-from analysis.engine.faint_search import nuisances_of
+from analysis.engine.faint_search import nuisances_of, screen_about
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Part
@@ -31,6 +31,10 @@ by this share of what they say it changes."""
 
 FORMS = 4
 """So many forms of a candidate are led at most, those of which straight lines say most."""
+
+ASKS, POOR = 8.0, 0.2
+"""What is said to explain so much beside what is on, squared, is led as it is promised; and what is
+said to leave so much more of a sample hides nowhere near."""
 
 
 def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Faint) -> list[Guess]:
@@ -61,6 +65,54 @@ def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Fa
                 rises = 0.5 * (cost_of(nothing) - cost_of(best))
                 guesses.append(Guess(best.state, best.nuisance, alone + rises))
     return sorted(guesses, key=lambda one: -one.log_score)
+
+
+def whole_beside(
+    system: System, candidates: Mapping[str, Candidate], found: Faint
+) -> Iterator[Followed]:
+    """What is there or not, led beside what is on, where straight lines do not promise it.
+
+    Parameters
+    ----------
+    system, candidates
+        As for `whole_guesses`.
+    found
+        Everything about where a hypothesis came to the end, what such candidates do there among it.
+    """
+    screen, samples = screen_about(found, candidates), Samples(system, everything=True)
+    nothing, noise = screen.null(), float(found.problem.base.mean())
+    for candidate in candidates.values():
+        if not candidate.fixed or (candidate.name, 0) not in found.terms:
+            continue
+        forms = sorted(_forms(screen, candidate), key=lambda one: -one.log_score)
+        starts = [_with(found.followed, candidate, one, candidates) for one in forms]
+        moved = [
+            Followed(nuisances_of(found, one), State.of(one, candidates)).point for one in forms
+        ]
+        here = samples.residuals([one.point for one in starts])
+        there = samples.residuals(moved)
+        bent = []
+        for v, scored in enumerate(forms):
+            said = 2.0 * noise * (nothing.log_score - scored.log_score)
+            near = -ASKS < said < POOR * len(here[v])
+            really = float(there[v] @ there[v]) - found.followed.misfit
+            off = abs(really - said) > ELSEWHERE + SHARE * abs(said)
+            if near and off and float(np.mean(here[v] ** 2)) < LOST:
+                bent.append(starts[v])
+        for start in bent[:FORMS]:
+            yield follow_ring(system, start.nuisance, start.state, everything=True, near=True)
+
+
+def _with(
+    about: Followed, candidate: Candidate, scored: Scored, candidates: Mapping[str, Candidate]
+) -> Followed:
+    """What is on, as it is, and beside it a candidate as a whole, in the form that was weighed."""
+    assert about.state is not None
+    values = about.state.term_values()
+    values |= {(candidate.name, term.name): term.step for term in candidate.terms}
+    part = scored.hypothesis.parts[candidate.name]
+    hypothesis = about.state.hypothesis.plus(candidate.name, part)
+    return Followed(about.nuisance, State.at(hypothesis, values, candidates))
 
 
 def _bent(system: System, screen: Screen, candidate: Candidate, found: Faint) -> list[Followed]:

@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.all_samples import cost_of
 from analysis.engine.faint import faint
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
+from analysis.engine.state import State
 from analysis.engine.system import (
     Array,
     Bundle,
@@ -22,7 +25,7 @@ from analysis.engine.system import (
     Shape,
     Term,
 )
-from analysis.engine.whole import whole_guesses
+from analysis.engine.whole import whole_beside, whole_guesses
 
 T_S = np.arange(0.0, 10.0, 0.01)
 NOISE = 0.02
@@ -40,12 +43,16 @@ def there_or_not(name: str) -> Candidate:
                      fixed=True)  # fmt: skip
 
 
+SLOW = np.column_stack([T_S / T_S[-1]] * 2)
+DRIFTS = Candidate("slow", "slow", "cell", (Term("size", "size", "V", "", -1.0, 1.0, 0.1),))
+
+
 class Channels:
     """Two that see one tone, each with its gain."""
 
     name = "channels"
     nuisances = (Nuisance("gain 1", KNOWN, "1"), Nuisance("gain 2", LOOSE, "1"))
-    candidates = (there_or_not("swapped"), there_or_not("glitch"))
+    candidates = (there_or_not("swapped"), there_or_not("glitch"), DRIFTS)
 
     def __init__(self, value: Array) -> None:
         noisy = value + NOISE * np.random.default_rng(7).standard_normal(value.shape)
@@ -64,6 +71,9 @@ class Channels:
         swapped, glitch = point.effects.get("swapped"), point.effects.get("glitch")
         if swapped is not None and swapped.shapes["form"]:
             seen = seen[:, ::-1]
+        slow = point.effects.get("slow")
+        if slow is not None:
+            seen = seen + slow.values["size"] * SLOW
         return np.asarray(seen + LATE if glitch is not None and glitch.shapes["form"] else seen)
 
 
@@ -90,6 +100,24 @@ def test_swapped_channels_are_led_out_of_the_gains_that_hid_it() -> None:
 
 def test_channels_in_their_own_place_are_not_guessed_to_be_swapped() -> None:
     assert guessed(TONES * [1.005, 1.2]) == []
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_beside_what_is_on_they_are_led_out_of_the_gains_as_well(swapped: bool) -> None:
+    truly = TONES * ([1.2, 1.005] if swapped else [1.005, 1.2])
+    system = Channels(truly + 0.3 * SLOW)
+    known = {one.name: one for one in system.candidates}
+    state = State.at(Hypothesis({"slow": Part(("size",))}), {("slow", "size"): 0.3}, known)
+    on = follow_ring(system, np.zeros(2), state, everything=True, near=True)
+    found = faint(system, replace(on, about=None), [known["swapped"], known["glitch"]])
+    led = list(whole_beside(system, known, found))
+    closer = [one for one in led if cost_of(one) < cost_of(on) - 10.0]
+    if not swapped:
+        assert closer == []
+        return
+    (one,) = closer
+    assert one.names == ("slow", "swapped")
+    assert one.nuisance == pytest.approx([0.5, 2.0], abs=0.3)
 
 
 def test_what_does_as_straight_lines_say_is_not_led() -> None:
