@@ -96,8 +96,9 @@ def whole_beside(
             said = 2.0 * noise * (nothing.log_score - scored.log_score)
             near = -ASKS < said < POOR * len(here[v])
             really = float(there[v] @ there[v]) - found.followed.misfit
-            off = abs(really - said) > ELSEWHERE + SHARE * abs(said)
-            if near and off and float(np.mean(here[v] ** 2)) < LOST:
+            # What is lost there is no number.
+            holds = abs(really - said) <= ELSEWHERE + SHARE * abs(said)
+            if near and not holds and float(np.mean(here[v] ** 2)) < LOST:
                 bent.append(starts[v])
         for start in bent[:FORMS]:
             yield follow_ring(system, start.nuisance, start.state, everything=True, near=True)
