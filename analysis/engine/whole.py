@@ -8,7 +8,7 @@ the parameters. Where it does as they say, they have told of it already; where i
 else, and is not lost, parameters are led to where they belong beside it.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of, screen_about
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
-from analysis.engine.hypothesis import Part
+from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen
@@ -55,9 +55,14 @@ def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Fa
     guesses = []
     for candidate in candidates.values():
         if candidate.fixed:
+            does = (found.terms[candidate.name, v] for v in range(len(candidate.variants())))
+            forms = [
+                (one, _said(found, one, columns[:, 0] * candidate.terms[0].step))
+                for one, columns in zip(_forms(screen, candidate), does, strict=True)
+            ]
             led = [
                 follow_ring(system, one.nuisance, one.state, everything=True, near=True)
-                for one in _bent(system, screen, candidate, found)
+                for one in _bent(system, candidates, candidate, found, forms)
             ]
             best = min((one for one in led if one.to_end), key=cost_of, default=None)
             if best is not None and cost_of(best) < cost_of(nothing) - WORTH_IT:
@@ -79,64 +84,58 @@ def whole_beside(
     found
         Everything about where a hypothesis came to the end, what such candidates do there among it.
     """
-    screen, samples = screen_about(found, candidates), Samples(system, everything=True)
+    screen = screen_about(found, candidates)
     nothing, noise = screen.null(), float(found.problem.base.mean())
+    most = POOR * len(found.seen.residual)
     for candidate in candidates.values():
         if not candidate.fixed or (candidate.name, 0) not in found.terms:
             continue
-        forms = sorted(_forms(screen, candidate), key=lambda one: -one.log_score)
-        starts = [_with(found.followed, candidate, one, candidates) for one in forms]
-        moved = [
-            Followed(nuisances_of(found, one), State.of(one, candidates)).point for one in forms
+        said = [
+            (one, 2.0 * noise * (nothing.log_score - one.log_score))
+            for one in _forms(screen, candidate)
         ]
-        here = samples.residuals([one.point for one in starts])
-        there = samples.residuals(moved)
-        bent = []
-        for v, scored in enumerate(forms):
-            said = 2.0 * noise * (nothing.log_score - scored.log_score)
-            near = -ASKS < said < POOR * len(here[v])
-            really = float(there[v] @ there[v]) - found.followed.misfit
-            # What is lost there is no number.
-            holds = abs(really - said) <= ELSEWHERE + SHARE * abs(said)
-            if near and not holds and float(np.mean(here[v] ** 2)) < LOST:
-                bent.append(starts[v])
-        for start in bent[:FORMS]:
+        near = [(one, rise) for one, rise in said if -ASKS < rise < most]
+        for start in _bent(system, candidates, candidate, found, near):
             yield follow_ring(system, start.nuisance, start.state, everything=True, near=True)
+
+
+def _bent(
+    system: System,
+    candidates: Mapping[str, Candidate],
+    candidate: Candidate,
+    found: Faint,
+    forms: Sequence[tuple[Scored, float]],
+) -> list[Followed]:
+    """Forms of a candidate that do another thing than straight lines say, and are not lost.
+
+    Each comes with what these say of it: by how much the squared misfit rises.
+    """
+    samples = Samples(system, everything=True)
+    starts = [_with(found.followed, candidate, one, candidates) for one, _ in forms]
+    moved = [Followed(nuisances_of(found, one), State.of(one, candidates)) for one, _ in forms]
+    here = samples.residuals([one.point for one in starts])
+    there = samples.residuals([one.point for one in moved])
+    bent = []
+    for v, (scored, said) in enumerate(forms):
+        really = float(there[v] @ there[v]) - found.followed.misfit
+        # What is lost there is no number.
+        holds = abs(really - said) <= ELSEWHERE + SHARE * abs(said)
+        if not holds and float(np.mean(here[v] ** 2)) < LOST:
+            bent.append((scored.log_score, starts[v]))
+    bent.sort(key=lambda one: -one[0])
+    return [start for _, start in bent[:FORMS]]
 
 
 def _with(
     about: Followed, candidate: Candidate, scored: Scored, candidates: Mapping[str, Candidate]
 ) -> Followed:
-    """What is on, as it is, and beside it a candidate as a whole, in the form that was weighed."""
-    assert about.state is not None
-    values = about.state.term_values()
+    """What is on, as it is, and a candidate as a whole, in the form that was weighed."""
+    on, values = Hypothesis(), {}
+    if about.state is not None:
+        on, values = about.state.hypothesis, about.state.term_values()
     values |= {(candidate.name, term.name): term.step for term in candidate.terms}
-    part = scored.hypothesis.parts[candidate.name]
-    hypothesis = about.state.hypothesis.plus(candidate.name, part)
+    hypothesis = on.plus(candidate.name, scored.hypothesis.parts[candidate.name])
     return Followed(about.nuisance, State.at(hypothesis, values, candidates))
-
-
-def _bent(system: System, screen: Screen, candidate: Candidate, found: Faint) -> list[Followed]:
-    """Forms of a candidate that do another thing than straight lines say, and are not lost."""
-    nothing = found.followed
-    samples = Samples(system, everything=True)
-    forms = list(_forms(screen, candidate))
-    starts = [State.of(one, {candidate.name: candidate}) for one in forms]
-    moved = [nuisances_of(found, one) for one in forms]
-    here = samples.residuals([Followed(nothing.nuisance, one).point for one in starts])
-    there = samples.residuals(
-        [Followed(nuisance, one).point for nuisance, one in zip(moved, starts, strict=True)]
-    )
-    bent = []
-    for v, scored in enumerate(forms):
-        said = _said(found, scored, found.terms[candidate.name, v][:, 0] * candidate.terms[0].step)
-        really = float(there[v] @ there[v]) - nothing.misfit
-        if float(np.mean(here[v] ** 2)) < LOST and abs(really - said) > ELSEWHERE + SHARE * abs(
-            said
-        ):
-            bent.append((scored.log_score, Followed(nothing.nuisance, starts[v])))
-    bent.sort(key=lambda one: -one[0])
-    return [start for _, start in bent[:FORMS]]
 
 
 def _said(found: Faint, scored: Scored, does: Array) -> float:
