@@ -1,7 +1,7 @@
 """A fitted hypothesis: where it stands, what it leaves, and how sure its numbers are."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
@@ -64,6 +64,11 @@ class Fitted:
     left: float = nan
     elsewhere: tuple[Mapping[str, Mapping[str, float]], ...] = ()
 
+    def as_sure(self, spread: Array) -> "Fitted":
+        """With other standard deviations of its free numbers, shape (numbers,)."""
+        sigmas, shape_sigmas = sigmas_by_name(self.state, spread)
+        return replace(self, sigmas=sigmas, shape_sigmas=shape_sigmas)
+
     @property
     def remaining(self) -> Array:
         """What is left of features where nuisances are likeliest, shape (f,)."""
@@ -76,3 +81,25 @@ class Fitted:
         """The square of that over its variance, error of form and all, on average."""
         used = self.problem.used
         return float(np.mean(self.remaining[used] ** 2 / self.weighed.variance[used]))
+
+
+def sigmas_by_name(
+    state: State, spread: Array
+) -> tuple[dict[tuple[str, str], float], dict[tuple[str, str], float]]:
+    """Standard deviations of free numbers: (candidate, term) -> its, and (candidate, shape) -> its.
+
+    Parameters
+    ----------
+    state
+        The free numbers.
+    spread
+        Of each, shape (numbers,).
+    """
+    sigmas, shape_sigmas = {}, {}
+    for sigma, i in zip(spread.tolist(), state.free, strict=True):
+        number = state.numbers[i]
+        for term in number.terms:
+            sigmas[number.candidate, term] = sigma
+        if number.shape is not None:
+            shape_sigmas[number.candidate, number.shape.name] = sigma
+    return sigmas, shape_sigmas

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
@@ -40,10 +38,10 @@ GUESSES = 2
 """So many of them, of other kinds, until one comes there with less; and until one comes farther,
 where the first came no farther than parameters alone."""
 
-SOME, CLEAR, STRETCHES = 0.2, (1.1, 1.2, 1.3), 200
+SOME, CLEAR = 0.2, (1.1, 1.2, 1.3)
 """Of the time: what explains as much, when lines were asked before, is looked at in that alone: up
 to where no more than so much is left of the squared misfit of a sample, the least of these with
-which it is that long, told that closely."""
+which it is that long."""
 
 
 class FollowedSearch(ToldLeader):
@@ -316,10 +314,7 @@ class FollowedSearch(ToldLeader):
 
     def _clear(self, led: Followed) -> float:
         """Up to which share of the time, of that it came to, little more than noise is left."""
-        (found,) = self._samples.residuals([led.point], led.share)
-        shares = np.arange(1, STRETCHES + 1) / STRETCHES
-        shares = shares[shares <= led.share]
-        left = np.array([np.mean(found[self._samples.shares <= one] ** 2) for one in shares])
+        shares, left = self._samples.means(led.point, led.share)
         longest = [float(max(shares[left < most], default=0.0)) for most in CLEAR]
         return next((one for one in longest if one >= SOME), 0.0)
 

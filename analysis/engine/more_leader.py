@@ -42,9 +42,6 @@ CLOSE = 60.0
 AS_CLOSE = 6
 """So many of several causes are led without each of these."""
 
-STRETCHES = 40
-"""How closely it is told up to where a beginning leads."""
-
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
 
@@ -129,21 +126,19 @@ class MoreLeader(RivalLeader):
 
     def _led_until(self, start: Followed, most: float) -> float:
         """Up to which share of the time, of so much, a beginning leaves little more than noise."""
-        (left,) = self._samples.residuals([start.point], most)
-        shares = np.linspace(0.0, most, STRETCHES + 1)
-        shares = shares[shares >= self._samples.shares.min()]
-        means = (np.mean(left[self._samples.shares <= one] ** 2) for one in shares)
-        return max((x for x, one in zip(shares, means, strict=True) if one < ARRIVED), default=0.0)
+        shares, left = self._samples.means(start.point, most)
+        return float(max(shares[left < ARRIVED], default=0.0))
 
     def _lead_abreast(self, before: Followed, after: Followed) -> None:
         """What had come as close as what one cause more was led beside is led with that as well."""
         if after.state is None or not (before.to_end and after.to_end):
             return
         (new,) = set(after.names) - set(before.names)
-        candidates, close = self._refiner.candidates, cost_of(before) + CLOSE
+        close = cost_of(before) + CLOSE
         known = {one.names for one in self._led if new in one.names}
         part = after.state.hypothesis.parts[new]
-        values = {key: one for key, one in after.state.term_values().items() if key[0] == new}
+        found = after.state.term_values()
+        values = {term: found[new, term] for term in part.terms}
         for one in sorted((one for one in self._led if one.to_end), key=cost_of):
             names = tuple(sorted({*one.names, new}))
             if one.state is None or names in known or cost_of(one) > close:
@@ -151,8 +146,7 @@ class MoreLeader(RivalLeader):
             if len(names) != len(after.names) or self._kinds(one.names) & self._kinds([new]):
                 continue
             known.add(names)
-            hypothesis = one.state.hypothesis.plus(new, part)
-            state = State.at(hypothesis, one.state.term_values() | values, candidates)
+            state = one.state.plus(new, part, values)
             start = one.nuisance + after.nuisance - before.nuisance
             self._keep(lead_from(self._system, after, state, start))
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.evidence import Frame, Problem, weigh
-from analysis.engine.fitted import Fitted
+from analysis.engine.fitted import Fitted, sigmas_by_name
 from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored, Screen
@@ -38,6 +38,10 @@ SHORTEST = 2
 
 ROUNDS_ANEW, SHORTEST_ANEW = 20, 5
 """The same where everything is simulated anew: the way is longer."""
+
+FINEST = 0.02
+"""There differences are this fine, in sigmas: of a longer one the bend looks like something that
+the recording tells, along directions that it tells nothing of, and parameters end sigmas off."""
 
 PATIENCE_ANEW = 4
 """And what a hypothesis promises is asked for after so many steps only: the first tell little."""
@@ -174,10 +178,11 @@ class Refiner:
         return np.asarray(self._rotation.T @ nuisance)
 
     def settle(self, fitted: Fitted, *, anew: bool = False) -> Fitted:
-        """The same hypothesis with its nuisances where they are likeliest.
+        """The same hypothesis with its numbers where they are likeliest, nuisances and its own.
 
-        Evidence counts them as moved to where they would fit, so that a fit may end before they
-        are there; what is to be predicted with is moved.
+        Evidence counts nuisances as moved to where they would fit, so that a fit may end before
+        they are there; what is to be predicted with is moved. They are likeliest there together
+        with what is on: either alone would be no fit.
 
         Parameters
         ----------
@@ -195,7 +200,7 @@ class Refiner:
             nuisance = best.weighed.nuisance
             if float(np.abs(nuisance - best.problem.at).max(initial=0.0)) < STILL:
                 break
-            tried = self._at(best.state, nuisance, used)
+            tried = self._at(best.state.moved(best.weighed.estimate), nuisance, used)
             variance = best.weighed.variance
             if not _misfit(tried, variance, used) < _misfit(best, variance, used):
                 break
@@ -293,7 +298,9 @@ class Refiner:
         residuals, rows = state.shape_rows()
         problem = replace(self._problem, residual=self.data - features, at=nuisance, used=used)
         if self.anew:
-            anew = nuisance_columns(self.system, self.lens, there, effects=points[0].effects)
+            anew = nuisance_columns(
+                self.system, self.lens, there, effects=points[0].effects, finest=FINEST
+            )
             problem = replace(problem, nuisance=anew)
         by_name = {name: columns[:, state.places(name)] for name in names}
         weighed = weigh(
@@ -315,13 +322,7 @@ class Refiner:
             gains=weighed.gains[back],
         )
         spread = np.sqrt(np.maximum(np.diag(weighed.covariance), 0.0))
-        sigmas, shape_sigmas = {}, {}
-        for k, i in enumerate(state.free):
-            number = state.numbers[i]
-            for term in number.terms:
-                sigmas[number.candidate, term] = float(spread[k])
-            if number.shape is not None:
-                shape_sigmas[number.candidate, number.shape.name] = float(spread[k])
+        sigmas, shape_sigmas = sigmas_by_name(state, spread)
         return Fitted(
             hypothesis=state.hypothesis,
             point=points[0],

@@ -20,6 +20,9 @@ SECOND_DIFFERENCE = 6.0
 OVERHEAD = 0.15
 """What the shortest simulation takes, of a whole one."""
 
+STRETCHES = 200
+"""How closely it is told up to where something leads."""
+
 
 class Samples:
     """The samples by which a ring is followed.
@@ -68,6 +71,24 @@ class Samples:
         for one in found:
             one[after] = 0.0
         return found
+
+    def means(self, point: Point, share: float) -> tuple[Array, Array]:
+        """Shares of the time, up to the one that is given, and what each leaves, shape (n,) both.
+
+        That is the squared residual of a sample up to there, on average.
+
+        Parameters
+        ----------
+        point
+            What is simulated.
+        share
+            The longest stretch.
+        """
+        (found,) = self.residuals([point], share)
+        first = float(self.shares.min())
+        shares = np.arange(1, STRETCHES + 1) / STRETCHES
+        shares = shares[(shares >= first) & (shares <= share)]
+        return shares, np.array([np.mean(found[self.shares <= one] ** 2) for one in shares])
 
     def _upto(self, share: float) -> float:
         """Share of a recording's time that a share of its samples takes, of the longest."""

@@ -174,6 +174,10 @@ def _at_rest(refiner: Refiner, fitted: Fitted, at_least: float) -> Fitted:
     if rung is not None:
         states.append(rung)
         starts.append(np.zeros_like(nuisance))
+    other = _of_other_shape(refiner, fitted)
+    if other is not None:
+        states.append(other)
+        starts.append(nuisance)
     begun = (
         refiner.at(state, refiner.directions_of(one))
         for state, one in zip(states, starts, strict=True)
@@ -208,6 +212,28 @@ def _on_ladder(refiner: Refiner, fitted: Fitted) -> State | None:
                 best, least = state, score
             size *= RUNG
     return best
+
+
+def _of_other_shape(refiner: Refiner, fitted: Fitted) -> State | None:
+    """Another of the values at which a shape is screened, where that fits better as it stands.
+
+    A moment that was screened at a wrong one, beside what was not on yet, stays in a hollow there:
+    what is simulated changes between the two alone.
+    """
+    at = refiner.directions_of(fitted.point.nuisance)
+    state = best = fitted.state
+    least = refiner.score_at(state, at)
+    for name, part in state.hypothesis.parts.items():
+        for shape in refiner.candidates[name].shapes_of(part.terms):
+            for value in () if shape.whole else shape.grid:
+                formed = replace(part, shapes={**part.shapes, shape.name: value})
+                tried = State.at(
+                    state.hypothesis.plus(name, formed), state.term_values(), refiner.candidates
+                )
+                score = refiner.score_at(tried, at)
+                if score > least:
+                    best, least = tried, score
+    return None if best is state else best
 
 
 def _exactly(refiner: Refiner, fitted: Fitted) -> Fitted:

@@ -191,6 +191,21 @@ class State:
             values[i] = there + share * (values[i] - there)
         return replace(self, values=values)
 
+    def plus(self, name: str, part: Part, values: Mapping[str, float]) -> "State":
+        """With one candidate more on.
+
+        Parameters
+        ----------
+        name
+            Of the candidate.
+        part
+            What of it is on.
+        values
+            Term -> magnitude.
+        """
+        magnitudes = self.term_values() | {(name, term): one for term, one in values.items()}
+        return State.at(self.hypothesis.plus(name, part), magnitudes, self.candidates)
+
     def without(self, name: str) -> "State":
         """With one candidate off."""
         keep = [i for i, one in enumerate(self.numbers) if one.candidate != name]

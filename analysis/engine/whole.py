@@ -130,12 +130,10 @@ def _with(
     about: Followed, candidate: Candidate, scored: Scored, candidates: Mapping[str, Candidate]
 ) -> Followed:
     """What is on, as it is, and a candidate as a whole, in the form that was weighed."""
-    on, values = Hypothesis(), {}
-    if about.state is not None:
-        on, values = about.state.hypothesis, about.state.term_values()
-    values |= {(candidate.name, term.name): term.step for term in candidate.terms}
-    hypothesis = on.plus(candidate.name, scored.hypothesis.parts[candidate.name])
-    return Followed(about.nuisance, State.at(hypothesis, values, candidates))
+    on = about.state or State.at(Hypothesis(), {}, candidates)
+    steps = {term.name: term.step for term in candidate.terms}
+    part = scored.hypothesis.parts[candidate.name]
+    return Followed(about.nuisance, on.plus(candidate.name, part, steps))
 
 
 def _said(found: Faint, scored: Scored, does: Array) -> float:
