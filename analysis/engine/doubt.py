@@ -36,11 +36,21 @@ def doubt_beside(
     noise
         The squared misfit that noise leaves.
     """
-    gained = squares_of(null) - squares_of(fitted)
-    if gained < HARDLY:
-        return 1.0
     odds = missed(fitted, null, candidates, noise) ** 2
     return odds / (1.0 + odds)
+
+
+def hardly_explains(fitted: Fitted, null: Fitted) -> bool:
+    """Whether a hypothesis leaves hardly less than parameters alone, or more: it is out then.
+
+    Evidence forgives laws their form, and may prefer one that leaves many times as much.
+
+    Parameters
+    ----------
+    fitted, null
+        As for `doubt_beside`.
+    """
+    return bool(fitted.hypothesis.parts) and squares_of(null) - squares_of(fitted) < HARDLY
 
 
 def missed(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
-from analysis.engine.doubt import doubt_beside
+from analysis.engine.doubt import doubt_beside, hardly_explains
 from analysis.engine.fitted import Fitted
 from analysis.engine.moved import rise_of
 from analysis.engine.system import Array, Candidate
@@ -131,9 +131,11 @@ def judge(
     shown = shown if lost else set()
     lacking = [not shown <= set(one.hypothesis.names) for one in fitted]
     scores[_idle(fitted, scores, candidates) | np.array(lacking)] = -np.inf
+    null = next(one for one in fitted if not one.hypothesis.parts)
     if settled:
         idle = [any(within_sigma(one, name) for name in one.hypothesis.names) for one in fitted]
-        scores[idle] = -np.inf
+        hardly = [hardly_explains(one, null) for one in fitted]
+        scores[np.logical_or(idle, hardly)] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
     for i, one in enumerate(fitted):
         if moved and len(one.hypothesis.names) == 1 and one.hypothesis.names[0] in moved:
@@ -144,7 +146,6 @@ def judge(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )
     chosen = fitted[int(np.argmax(weights))]
-    null = next(one for one in fitted if not one.hypothesis.parts)
     if absent > 0.5 or not chosen.hypothesis.parts:
         # Parameters alone follow a ring from which nothing was left out.
         verdict = "unexplained" if lost else "none"

@@ -155,11 +155,12 @@ class MoreLeader(RivalLeader):
 
         What explains little of what a law of friction leaves is lost in how wrong that law may be,
         and to lead it is in vain; what explains all of it shows that the law was right. Where
-        parameters are bent far, they make up for some of it, and this is not asked.
+        parameters are bent far, they make up for some of it, and this is not asked. All of it is
+        what is left of the stretch that promises it.
         """
-        best, known = self._best, self._refiner.candidates
+        known, left = self._refiner.candidates, found.seen.residual
         falls = promised_by(found, self._refiner, scored)
-        count = len(self._samples.shares)
+        best, count = replace(self._best, misfit=float(left @ left)), len(left)
         # What parameters no longer make up for is hidden in no error of form.
         eased = eased_by(found, self._refiner, scored)
         explains = max(falls - eased, 0.0)

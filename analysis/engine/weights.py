@@ -25,7 +25,11 @@ TEMPER_SHARE = 0.1
 that explain it: the more there is, the more their form counts."""
 
 MOST_AT_NOISE = 20.0
-"""But by no more than this, where the best comes to the noise: its form has shown to be right."""
+"""But by no more than this, where the best comes to the noise: its form has shown to be right. What
+leaves twice as much beyond a perfect fit as noise may has shown a quarter of that."""
+
+NEARLY = 2.0
+"""What leaves no more than so many times what noise may, beyond a perfect fit, is nearly there."""
 
 OF_LEFT = 3.0
 """But what leaves ten times as much, squared, as the likeliest is a thousand times less likely,
@@ -70,9 +74,11 @@ def weights_of(
     temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
     if settled:
         temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
-    elif best.left < noise:
-        temper = min(temper, MOST_AT_NOISE)
-        scores = _strained(scores, fitted, temper)
+    elif np.isfinite(best.left):
+        times = max((best.left - 1.0) / (noise - 1.0), 1.0)
+        temper = min(temper, MOST_AT_NOISE * times**2)
+        if times == 1.0:
+            scores = _strained(scores, fitted, temper)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
@@ -94,9 +100,10 @@ def _by_chance(
 
     That is of those that have a cause less than the best; infinity for all others.
 
-    Where the best comes to the noise, and without one of its causes more than that is left, an
-    error of form had to be of the shape of that cause. It lies in any of `FORMS` directions, of
-    unknown size: all but a share s of it is in k of them with a probability of s^((FORMS - k) / 2).
+    Where the best comes nearly to the noise, and without one of its causes more is left than that
+    is, an error of form had to be of the shape of that cause. It lies in any of `FORMS` directions,
+    of unknown size: all but a share s of it is in k of them with a probability of
+    s^((FORMS - k) / 2).
 
     Parameters
     ----------
@@ -106,7 +113,7 @@ def _by_chance(
         The squared misfit of a sample that noise leaves.
     """
     found = np.full(len(fitted), np.inf)
-    if not best.left < noise:
+    if not best.left - 1.0 < NEARLY * (noise - 1.0):
         return found
     for i, one in enumerate(fitted):
         fewer = set(one.hypothesis.names)
