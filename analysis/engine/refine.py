@@ -43,6 +43,10 @@ FINEST = 0.02
 """There differences are this fine, in sigmas: of a longer one the bend looks like something that
 the recording tells, along directions that it tells nothing of, and parameters end sigmas off."""
 
+FINER = 0.025
+"""And of what is on, this share of their steps: the moment of an event is not told by what one far
+from it does."""
+
 PATIENCE_ANEW = 4
 """And what a hypothesis promises is asked for after so many steps only: the first tell little."""
 
@@ -279,27 +283,26 @@ class Refiner:
         """Simulate there, with a difference for every free number."""
         count, names = len(state.free), state.hypothesis.names
         there = self._rotation @ nuisance
-        points = [state.point(there)]
-        if count or names:
-            calm = [state, *(state.bumped(k) for k in range(count))]
-            calm += [state.without(name) for name in names]
-            points += [replace(one.point(there), ring="damped") for one in calm]
+        point = state.point(there)
+        calm = [state, *(state.without(name) for name in names)] if count or names else []
+        points = [point, *(replace(one.point(there), ring="damped") for one in calm)]
         found = simulate_features(self.system, self.lens, points)
         # With numbers far out a simulation may come to nothing.
         whole = bool(sound(found).all())
         found = np.where(sound(found), found, 0.0)
         features, damped = found[0], found[1:]
-        columns = np.stack(
-            [(damped[1 + k] - damped[0]) / state.signed_step(k) for k in range(count)], axis=1
-        ) if count else np.zeros((len(features), 0))  # fmt: skip
-        done = {name: damped[0] - row for name, row in zip(names, damped[1 + count :], strict=True)}
+        columns = np.zeros((len(features), 0))
+        if count:
+            columns, came = self._own_columns(state, there, damped[0])
+            whole = whole and came
+        done = {name: damped[0] - row for name, row in zip(names, damped[1:], strict=True)}
         order = [k for name in names for k in state.places(name)]
         lows, highs = state.bounds()
         residuals, rows = state.shape_rows()
         problem = replace(self._problem, residual=self.data - features, at=nuisance, used=used)
         if self.anew:
             anew = nuisance_columns(
-                self.system, self.lens, there, effects=points[0].effects, finest=FINEST
+                self.system, self.lens, there, effects=point.effects, finest=FINEST
             )
             problem = replace(problem, nuisance=anew)
         by_name = {name: columns[:, state.places(name)] for name in names}
@@ -325,7 +328,7 @@ class Refiner:
         sigmas, shape_sigmas = sigmas_by_name(state, spread)
         return Fitted(
             hypothesis=state.hypothesis,
-            point=points[0],
+            point=point,
             features=features,
             problem=problem,
             log_score=(
@@ -342,6 +345,34 @@ class Refiner:
             at_limit=state.at_edge(),
             state=state,
         )
+
+    def _own_columns(self, state: State, there: Array, here: Array) -> tuple[Array, bool]:
+        """What one unit of each free number does, shape (f, k), and whether all came to something.
+
+        By finer differences where everything is simulated anew, but for numbers that so little of
+        does not move.
+
+        Parameters
+        ----------
+        state, there, here
+            The numbers, the nuisances in sigmas, and the features there, shape (f,).
+        """
+        shares = np.full(len(state.free), FINER if self.anew else 1.0)
+
+        def simulated(which: Sequence[int]) -> Array:
+            moved = [state.bumped(k, float(shares[k])).point(there) for k in which]
+            points = [replace(one, ring="damped") for one in moved]
+            return simulate_features(self.system, self.lens, points)
+
+        found = simulated(range(len(shares)))
+        still = np.flatnonzero((found == here).all(axis=1) & (shares < 1.0))
+        if still.size:
+            shares[still] = 1.0
+            found[still] = simulated(still.tolist())
+        whole = bool(sound(found).all())
+        found = np.where(sound(found), found, 0.0)
+        steps = np.array([state.signed_step(k, float(one)) for k, one in enumerate(shares)])
+        return ((found - here) / steps[:, None]).T, whole
 
 
 def _misfit(fitted: Fitted, variance: Array, used: NDArray[np.bool_]) -> float:

@@ -180,3 +180,20 @@ def test_a_rival_is_led_again_from_what_found_a_better_valley() -> None:
     assert again.left == pytest.approx(1.0, abs=0.1)
     assert again.nuisance[0] == pytest.approx(2.0, abs=0.01)
     assert shown_the_way(system, [hollow], [hollow]) == [hollow]
+
+
+def test_numbers_of_what_was_led_are_as_sure_as_all_samples_make_them(refiner: Refiner) -> None:
+    off = []
+    for seed in range(12):
+        system = LetGo(ring(0.0, 0.2, 0.0, 0.0))
+        (bundle,) = system.bundles
+        noise = 0.02 * np.random.default_rng(seed).standard_normal(bundle.value.shape)
+        system.bundles = (replace(bundle, value=ring(0.0, 0.2, 0.0, 0.0) + noise),)
+        led = follow_ring(system, np.zeros(1), state_of(DAMPING, 0.1), everything=True)
+        nothing = follow_ring(system, np.zeros(1), everything=True)
+        first = all_samples_say(refiner, [led], nothing, COUNT)[0]
+        sigma = first.sigmas["damping", "rate"]
+        # Noise over the root of 50/s times the integral of (t exp(-t/5) sin)^2 / 2: 0.0007.
+        assert 0.0007 < sigma < 0.001
+        off.append((first.values["damping", "rate"] - 0.2) / sigma)
+    assert 0.5 < np.sqrt(np.mean(np.square(off))) < 1.5

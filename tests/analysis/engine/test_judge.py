@@ -271,3 +271,33 @@ def test_what_a_law_leaves_of_a_great_deal_is_its_error_of_form(
     assert (judge(led, CANDIDATES).doubt > 0.5) == doubted
     exact = {name: replace(one, form_share=0.0) for name, one in CANDIDATES.items()}
     assert judge(led, exact).doubt > 0.5
+
+
+def test_what_leaves_hardly_more_than_noise_may_is_as_sure_as_what_leaves_that(
+    refiner: Refiner,
+) -> None:
+    # Parameters alone went to a wrong valley: of so much, scores would count for nothing.
+    for left, sure in ((1.05, True), (1.07, True), (1.5, False)):
+        found = [
+            fitted(refiner, state_of(DAMPING, 0.2), -50.0, left),
+            fitted(refiner, state_of(STEP, 1.0, moment=4.0), -300.0, 3.5),
+            fitted(refiner, None, -2.5e6, 3e4),
+        ]
+        uncertain = {name: replace(one, form_share=0.1) for name, one in CANDIDATES.items()}
+        (cause,) = judge(found, uncertain).causes
+        assert cause.name == "damping"
+        assert (cause.rivals == ()) == sure
+
+
+def test_what_leaves_more_than_nothing_does_is_out_whatever_evidence_forgives_it(
+    refiner: Refiner,
+) -> None:
+    found = [
+        fitted(refiner, state_of(DAMPING, 0.2), -10.0, 90.0),
+        fitted(refiner, None, -1e5, 50.0),
+    ]
+    found[0] = replace(found[0], sigmas=dict.fromkeys(found[0].values, 1e-3))
+    assert [one.name for one in judge(found, CANDIDATES).causes] == ["damping"]
+    said = judge(found, CANDIDATES, settled=True)
+    assert said.verdict == "none"
+    assert said.chosen is found[1]
