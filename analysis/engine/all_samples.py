@@ -206,7 +206,7 @@ def all_samples_say(
         score, state, one = same[0]
         there = refiner.at(state, refiner.directions_of(one.nuisance))
         as_likely = [other for behind, other, _ in same[1:] if behind > score - AS_LIKELY]
-        there = _as_sure(there, one, likeliest)
+        there = _as_sure(refiner, there, one, likeliest)
         fitted.append(replace(
             there, log_score=score, point=one.point, left=one.misfit / count,
             elsewhere=_places(as_likely, state),
@@ -214,14 +214,16 @@ def all_samples_say(
     return sorted(fitted, key=lambda one: -one.log_score)
 
 
-def _as_sure(fitted: Fitted, led: Followed, noise: float) -> Fitted:
+def _as_sure(refiner: Refiner, fitted: Fitted, led: Followed, noise: float) -> Fitted:
     """A fitted hypothesis with standard deviations of its own numbers as all samples tell them.
 
     Lines without the ring tell less, by far. All other numbers are free within what is known of
-    them.
+    them, but for parameters that a number of it is itself: it is said of both together.
 
     Parameters
     ----------
+    refiner
+        Of the system.
     fitted, led
         The hypothesis, and as it was led.
     noise
@@ -234,6 +236,10 @@ def _as_sure(fitted: Fitted, led: Followed, noise: float) -> Fitted:
     known[~own, ~own] += 1.0
     _, rows = led.state.shape_rows()
     known[np.ix_(own, own)] += rows.T @ rows
+    single = {(one.candidate, one.terms) for one in led.state.numbers}
+    same = [(one.cause or "", (one.term or "",)) in single for one in refiner.system.nuisances]
+    keep = np.concatenate([~np.array(same, dtype=bool), np.ones(len(known) - count, dtype=bool)])
+    known, count = known[np.ix_(keep, keep)], int(keep[:count].sum())
     scale = np.sqrt(np.diag(known))
     scale[scale == 0.0] = 1.0
     covariance = np.linalg.pinv(known / np.outer(scale, scale), hermitian=True)

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,7 +22,7 @@ class Rival:
 
     name: str
     probability: float
-    fitted: Fitted
+    fitted: Fitted = field(repr=False)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """A hypothesis fitted in earnest: simulated again with everything free, until it stays."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 
@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.evidence import Frame, Problem, weigh
+from analysis.engine.fine import columns_of
 from analysis.engine.fitted import Fitted, sigmas_by_name
 from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
 from analysis.engine.screen import Scored, Screen
-from analysis.engine.sensitivity import nuisance_columns, simulate_features, sound
+from analysis.engine.sensitivity import simulate_features, sound
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import Array, Point, Setting, System
 
 ROUNDS = 5
 """Of simulating and solving."""
@@ -301,9 +302,7 @@ class Refiner:
         residuals, rows = state.shape_rows()
         problem = replace(self._problem, residual=self.data - features, at=nuisance, used=used)
         if self.anew:
-            anew = nuisance_columns(
-                self.system, self.lens, there, effects=point.effects, finest=FINEST
-            )
+            anew = self._nuisance_columns(there, point.effects)
             problem = replace(problem, nuisance=anew)
         by_name = {name: columns[:, state.places(name)] for name in names}
         weighed = weigh(
@@ -349,30 +348,40 @@ class Refiner:
     def _own_columns(self, state: State, there: Array, here: Array) -> tuple[Array, bool]:
         """What one unit of each free number does, shape (f, k), and whether all came to something.
 
-        By finer differences where everything is simulated anew, but for numbers that so little of
-        does not move.
-
         Parameters
         ----------
         state, there, here
             The numbers, the nuisances in sigmas, and the features there, shape (f,).
         """
-        shares = np.full(len(state.free), FINER if self.anew else 1.0)
+        stated = np.array([state.signed_step(k) for k in range(len(state.free))])
+        steps = FINER * stated if self.anew else stated
 
-        def simulated(which: Sequence[int]) -> Array:
-            moved = [state.bumped(k, float(shares[k])).point(there) for k in which]
-            points = [replace(one, ring="damped") for one in moved]
+        def simulated(which: Sequence[int], by: Array) -> Array:
+            shares = (step / stated[k] for k, step in zip(which, by, strict=True))
+            moved = (state.bumped(k, one) for k, one in zip(which, shares, strict=True))
+            points = [replace(one.point(there), ring="damped") for one in moved]
             return simulate_features(self.system, self.lens, points)
 
-        found = simulated(range(len(shares)))
-        still = np.flatnonzero((found == here).all(axis=1) & (shares < 1.0))
-        if still.size:
-            shares[still] = 1.0
-            found[still] = simulated(still.tolist())
-        whole = bool(sound(found).all())
-        found = np.where(sound(found), found, 0.0)
-        steps = np.array([state.signed_step(k, float(one)) for k, one in enumerate(shares)])
-        return ((found - here) / steps[:, None]).T, whole
+        root = self._root if self.anew else np.full(len(here), np.inf)
+        return columns_of(simulated, here, root, steps, stated, both=False)
+
+    def _nuisance_columns(self, there: Array, effects: Mapping[str, Setting]) -> Array:
+        """What one sigma of each nuisance does beside what is on, shape (f, nuisances)."""
+        stated = np.array([one.step for one in self.system.nuisances])
+
+        def simulated(which: Sequence[int], by: Array) -> Array:
+            moved = by[:, None] * np.eye(len(there))[which]
+            points = [Point(there + one, effects, ring="damped") for one in moved]
+            return simulate_features(self.system, self.lens, points)
+
+        (here,) = simulate_features(self.system, self.lens, [Point(there, effects, ring="damped")])
+        steps = np.minimum(stated, FINEST)
+        return columns_of(simulated, here, self._root, steps, stated, both=True)[0]
+
+    @property
+    def _root(self) -> Array:
+        """Noise of features, shape (f,); infinity where they do not count."""
+        return np.where(self._problem.used, np.sqrt(self._problem.base), np.inf)
 
 
 def _misfit(fitted: Fitted, variance: Array, used: NDArray[np.bool_]) -> float:

@@ -61,7 +61,6 @@ def nuisance_columns(
     about: Array,
     progress: Progress | None = None,
     effects: Mapping[str, Setting] | None = None,
-    finest: float = np.inf,
 ) -> Array:
     """What one sigma of each nuisance does, by differences, shape (f, nuisances).
 
@@ -75,26 +74,16 @@ def nuisance_columns(
         Told of it.
     effects
         Candidates that are on.
-    finest
-        Of the differences, in sigmas: those stated that are longer are no longer than this, but for
-        nuisances that so little of does not move.
     """
     on = dict(effects or {})
-    stated = np.array([one.step for one in system.nuisances])
-    steps = np.minimum(stated, finest)
-
-    def simulated(which: Sequence[int]) -> Array:
-        moved = [about + steps[i] * np.eye(len(about))[i] for i in which]
-        points = [Point(at, on, ring="damped") for at in moved]
-        return simulate_features(system, lens, points, progress)
-
-    (here,) = simulate_features(system, lens, [Point(about, on, ring="damped")])
-    found = simulated(range(len(about)))
-    still = np.flatnonzero((found == here).all(axis=1) & (steps < stated))
-    if still.size:
-        steps[still] = stated[still]
-        found[still] = simulated(still.tolist())
-    return _finite((found - here) / steps[:, None]).T
+    points = [Point(about, on, ring="damped")]
+    for i, nuisance in enumerate(system.nuisances):
+        at = about.copy()
+        at[i] += nuisance.step
+        points.append(Point(at, on, ring="damped"))
+    found = simulate_features(system, lens, points, progress)
+    steps = np.array([one.step for one in system.nuisances])
+    return _finite((found[1:] - found[0]) / steps[:, None]).T
 
 
 def term_columns(

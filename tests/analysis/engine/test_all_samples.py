@@ -193,7 +193,7 @@ def test_numbers_of_what_was_led_are_as_sure_as_all_samples_make_them(refiner: R
         nothing = follow_ring(system, np.zeros(1), everything=True)
         first = all_samples_say(refiner, [led], nothing, COUNT)[0]
         sigma = first.sigmas["damping", "rate"]
-        # Noise over the root of 50/s times the integral of (t exp(-t/5) sin)^2 / 2: 0.0007.
+        # Noise over the root of 50/s times the integral of (t exp(-t/5) sin)^2: 0.0007.
         assert 0.0007 < sigma < 0.001
         off.append((first.values["damping", "rate"] - 0.2) / sigma)
     assert 0.5 < np.sqrt(np.mean(np.square(off))) < 1.5
