@@ -16,6 +16,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
+from analysis.engine.sure import as_sure
 from analysis.engine.system import Array, System
 from analysis.engine.way import LEAVES, STRAIN
 from analysis.engine.whiten import noise_expected, noise_leaves
@@ -206,45 +207,12 @@ def all_samples_say(
         score, state, one = same[0]
         there = refiner.at(state, refiner.directions_of(one.nuisance))
         as_likely = [other for behind, other, _ in same[1:] if behind > score - AS_LIKELY]
-        there = _as_sure(refiner, there, one, likeliest)
+        there = as_sure(refiner, there, one, likeliest)
         fitted.append(replace(
             there, log_score=score, point=one.point, left=one.misfit / count,
             elsewhere=_places(as_likely, state),
         ))  # fmt: skip
     return sorted(fitted, key=lambda one: -one.log_score)
-
-
-def _as_sure(refiner: Refiner, fitted: Fitted, led: Followed, noise: float) -> Fitted:
-    """A fitted hypothesis with standard deviations of its own numbers as all samples tell them.
-
-    Lines without the ring tell less, by far. All other numbers are free within what is known of
-    them, but for parameters that a number of it is itself: it is said of both together.
-
-    Parameters
-    ----------
-    refiner
-        Of the system.
-    fitted, led
-        The hypothesis, and as it was led.
-    noise
-        The variance along each direction, error of form and all.
-    """
-    if led.information is None or led.state is None:
-        return fitted
-    known, count = led.information / noise, len(led.nuisance)
-    own = np.arange(len(known)) >= count
-    known[~own, ~own] += 1.0
-    _, rows = led.state.shape_rows()
-    known[np.ix_(own, own)] += rows.T @ rows
-    single = {(one.candidate, one.terms) for one in led.state.numbers}
-    same = [(one.cause or "", (one.term or "",)) in single for one in refiner.system.nuisances]
-    keep = np.concatenate([~np.array(same, dtype=bool), np.ones(len(known) - count, dtype=bool)])
-    known, count = known[np.ix_(keep, keep)], int(keep[:count].sum())
-    scale = np.sqrt(np.diag(known))
-    scale[scale == 0.0] = 1.0
-    covariance = np.linalg.pinv(known / np.outer(scale, scale), hermitian=True)
-    spread = np.sqrt(np.maximum(np.diag(covariance)[count:], 0.0)) / scale[count:]
-    return fitted.as_sure(spread)
 
 
 def _places(others: Sequence[State], state: State) -> tuple[dict[str, dict[str, float]], ...]:

@@ -18,6 +18,7 @@ from analysis.engine.hypothesis import LOG_ODDS, Hypothesis, Part
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
+from analysis.engine.sure import as_sure
 from analysis.engine.system import Array, Candidate, Nuisance, System
 
 STANDS_OUT = 2.0
@@ -118,5 +119,5 @@ def released(refiner: Refiner, null: Fitted, cause: str) -> Fitted:
     start = freed(system, refiner.candidates, Followed(null.point.nuisance, None), cause)
     led = follow_ring(system, start.nuisance, start.state, everything=True, near=True, most=EFFORT)
     assert led.state is not None
-    there = refiner.standing(led.state, led.nuisance)
+    there = as_sure(refiner, refiner.standing(led.state, led.nuisance), led, max(null.left, 1.0))
     return replace(there, log_score=null.log_score, left=min(led.left, null.left))
