@@ -85,6 +85,7 @@ class Refiner:
         self.calibrated = calibrated
         self._rotation = calibrated.rotation
         self.anew = anew
+        self._finely = False
         if anew:
             # A direction that is not seen here may be seen with a candidate on.
             self._rotation = np.eye(len(calibrated.at))
@@ -98,6 +99,15 @@ class Refiner:
         found.candidates = {
             name: replace(one, form_share=0.0) for name, one in self.candidates.items()
         }
+        return found
+
+    def finely(self) -> "Refiner":
+        """The same, by differences as fine as what they move asks for (`fine`).
+
+        Longer ones see over hollows, and find the valley that these lead through.
+        """
+        found = copy(self)
+        found._finely = True
         return found
 
     def nothing(self) -> Fitted:
@@ -354,7 +364,7 @@ class Refiner:
             The numbers, the nuisances in sigmas, and the features there, shape (f,).
         """
         stated = np.array([state.signed_step(k) for k in range(len(state.free))])
-        steps = FINER * stated if self.anew else stated
+        steps = FINER * stated if self._finely else stated
 
         def simulated(which: Sequence[int], by: Array) -> Array:
             shares = (step / stated[k] for k, step in zip(which, by, strict=True))
@@ -362,7 +372,7 @@ class Refiner:
             points = [replace(one.point(there), ring="damped") for one in moved]
             return simulate_features(self.system, self.lens, points)
 
-        root = self._root if self.anew else np.full(len(here), np.inf)
+        root = self._root
         return columns_of(simulated, here, root, steps, stated, both=False)
 
     def _nuisance_columns(self, there: Array, effects: Mapping[str, Setting]) -> Array:
@@ -380,8 +390,9 @@ class Refiner:
 
     @property
     def _root(self) -> Array:
-        """Noise of features, shape (f,); infinity where they do not count."""
-        return np.where(self._problem.used, np.sqrt(self._problem.base), np.inf)
+        """Noise of features, shape (f,); infinity where they do not count, or none is asked for."""
+        counts = self._problem.used & self._finely
+        return np.where(counts, np.sqrt(self._problem.base), np.inf)
 
 
 def _misfit(fitted: Fitted, variance: Array, used: NDArray[np.bool_]) -> float:

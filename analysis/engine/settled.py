@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.cause import within_sigma
+from analysis.engine.doubt import squares_of
 from analysis.engine.finder import SMALL
 from analysis.engine.fitted import Fitted
 from analysis.engine.judge import NOISE
@@ -80,7 +81,12 @@ def settled(
     known = {one.hypothesis.names for one in done.values()}
     found = [_counted(refiner, one, refiner.settle(one)) for one in done.values()]
     found.sort(key=lambda one: -one.log_score)
-    found[:EXACT] = [_exactly(refiner, one) for one in found[:EXACT]]
+    fine = refiner.finely()
+    nothing = next(k for k, one in enumerate(found) if not one.hypothesis.parts)
+    for k in {*range(min(EXACT, len(found))), nothing}:
+        found[k] = _polished(fine, found[k])
+    found.sort(key=lambda one: -one.log_score)
+    found[:EXACT] = [_exactly(fine, one) for one in found[:EXACT]]
     # What was fitted with older columns, and is far behind, is counted where it is.
     found += [_counted(refiner, one, one) for one in waiting if one.hypothesis.names not in known]
     return sorted(found, key=lambda one: -one.log_score)
@@ -102,7 +108,8 @@ def rested(refiner: Refiner, start: Fitted, at_least: float = -np.inf) -> Fitted
     for _ in range(TURNS):
         found = refiner.settle(refiner.again(best, best.problem.used, at_least))
         if not found.log_score > best.log_score + SETTLED:
-            return found if np.isfinite(found.log_score) else best
+            # What fits better as it stands may be less likely, its form forgiven.
+            return found if found.log_score > best.log_score - SETTLED else best
         best = found
         if best.log_score < at_least:
             break
@@ -253,6 +260,15 @@ def _exactly(refiner: Refiner, fitted: Fitted) -> Fitted:
     if not found.left < NOISE:
         return fitted
     return replace(found, log_score=max(found.log_score, fitted.log_score))
+
+
+def _polished(fine: Refiner, fitted: Fitted) -> Fitted:
+    """Where it stays by fine differences, if it is likelier there, or as likely and leaves less."""
+    there = rested(fine, fine.at(fitted.state, fitted.problem.at))
+    found = _counted(fine, there, there)
+    ahead = found.log_score - fitted.log_score
+    less = squares_of(found) < squares_of(fitted) - SETTLED
+    return found if ahead > SETTLED or (less and ahead > -SETTLED) else fitted
 
 
 def _counted(refiner: Refiner, fitted: Fitted, there: Fitted) -> Fitted:
