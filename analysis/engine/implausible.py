@@ -14,7 +14,7 @@ from analysis.engine.hypothesis import Part
 from analysis.engine.part import rings
 from analysis.engine.screen import Scored
 from analysis.engine.search import Search
-from analysis.engine.settled import rested
+from analysis.engine.settled import counted, polished, rested
 from analysis.engine.system import Candidate
 
 
@@ -101,6 +101,7 @@ def _beyond(
     else:
         # As the chosen one was: to where it stays.
         fitted = rested(refiner, refiner.fit_from(starts, len(starts)))
+        fitted = polished(refiner.finely(), counted(refiner, fitted, fitted))
     gain = fitted.log_score - chosen.log_score
     plausible = {term.name: term for term in candidate.terms}
     found = []

@@ -1,6 +1,6 @@
 """A hypothesis fitted in earnest: simulated again with everything free, until it stays."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.evidence import Frame, Problem, weigh
-from analysis.engine.fine import columns_of
+from analysis.engine.fine import nuisances_beside, own_columns
 from analysis.engine.fitted import Fitted, sigmas_by_name
 from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
@@ -17,7 +17,7 @@ from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import simulate_features, sound
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point, Setting, System
+from analysis.engine.system import Array, System
 
 ROUNDS = 5
 """Of simulating and solving."""
@@ -39,14 +39,6 @@ SHORTEST = 2
 
 ROUNDS_ANEW, SHORTEST_ANEW = 20, 5
 """The same where everything is simulated anew: the way is longer."""
-
-FINEST = 0.02
-"""There differences are this fine, in sigmas: of a longer one the bend looks like something that
-the recording tells, along directions that it tells nothing of, and parameters end sigmas off."""
-
-FINER = 0.025
-"""And of what is on, this share of their steps: the moment of an event is not told by what one far
-from it does."""
 
 PATIENCE_ANEW = 4
 """And what a hypothesis promises is asked for after so many steps only: the first tell little."""
@@ -304,7 +296,9 @@ class Refiner:
         features, damped = found[0], found[1:]
         columns = np.zeros((len(features), 0))
         if count:
-            columns, came = self._own_columns(state, there, damped[0])
+            columns, came = own_columns(
+                self.system, self.lens, state, there, damped[0], self._root, fine=self._finely
+            )
             whole = whole and came
         done = {name: damped[0] - row for name, row in zip(names, damped[1:], strict=True)}
         order = [k for name in names for k in state.places(name)]
@@ -312,7 +306,7 @@ class Refiner:
         residuals, rows = state.shape_rows()
         problem = replace(self._problem, residual=self.data - features, at=nuisance, used=used)
         if self.anew:
-            anew = self._nuisance_columns(there, point.effects)
+            anew = nuisances_beside(self.system, self.lens, there, point.effects, self._root)
             problem = replace(problem, nuisance=anew)
         by_name = {name: columns[:, state.places(name)] for name in names}
         weighed = weigh(
@@ -354,39 +348,6 @@ class Refiner:
             at_limit=state.at_edge(),
             state=state,
         )
-
-    def _own_columns(self, state: State, there: Array, here: Array) -> tuple[Array, bool]:
-        """What one unit of each free number does, shape (f, k), and whether all came to something.
-
-        Parameters
-        ----------
-        state, there, here
-            The numbers, the nuisances in sigmas, and the features there, shape (f,).
-        """
-        stated = np.array([state.signed_step(k) for k in range(len(state.free))])
-        steps = FINER * stated if self._finely else stated
-
-        def simulated(which: Sequence[int], by: Array) -> Array:
-            shares = (step / stated[k] for k, step in zip(which, by, strict=True))
-            moved = (state.bumped(k, one) for k, one in zip(which, shares, strict=True))
-            points = [replace(one.point(there), ring="damped") for one in moved]
-            return simulate_features(self.system, self.lens, points)
-
-        root = self._root
-        return columns_of(simulated, here, root, steps, stated, both=False)
-
-    def _nuisance_columns(self, there: Array, effects: Mapping[str, Setting]) -> Array:
-        """What one sigma of each nuisance does beside what is on, shape (f, nuisances)."""
-        stated = np.array([one.step for one in self.system.nuisances])
-
-        def simulated(which: Sequence[int], by: Array) -> Array:
-            moved = by[:, None] * np.eye(len(there))[which]
-            points = [Point(there + one, effects, ring="damped") for one in moved]
-            return simulate_features(self.system, self.lens, points)
-
-        (here,) = simulate_features(self.system, self.lens, [Point(there, effects, ring="damped")])
-        steps = np.minimum(stated, FINEST)
-        return columns_of(simulated, here, self._root, steps, stated, both=True)[0]
 
     @property
     def _root(self) -> Array:

@@ -60,7 +60,6 @@ def nuisance_columns(
     lens: Lens,
     about: Array,
     progress: Progress | None = None,
-    effects: Mapping[str, Setting] | None = None,
 ) -> Array:
     """What one sigma of each nuisance does, by differences, shape (f, nuisances).
 
@@ -72,15 +71,12 @@ def nuisance_columns(
         Nuisances about which, in sigmas.
     progress
         Told of it.
-    effects
-        Candidates that are on.
     """
-    on = dict(effects or {})
-    points = [Point(about, on, ring="damped")]
+    points = [Point(about, ring="damped")]
     for i, nuisance in enumerate(system.nuisances):
         at = about.copy()
         at[i] += nuisance.step
-        points.append(Point(at, on, ring="damped"))
+        points.append(Point(at, ring="damped"))
     found = simulate_features(system, lens, points, progress)
     steps = np.array([one.step for one in system.nuisances])
     return _finite((found[1:] - found[0]) / steps[:, None]).T

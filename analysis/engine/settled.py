@@ -79,16 +79,16 @@ def settled(
         if not _nested(refiner, done, held):
             break
     known = {one.hypothesis.names for one in done.values()}
-    found = [_counted(refiner, one, refiner.settle(one)) for one in done.values()]
+    found = [counted(refiner, one, refiner.settle(one)) for one in done.values()]
     found.sort(key=lambda one: -one.log_score)
     fine = refiner.finely()
     nothing = next(k for k, one in enumerate(found) if not one.hypothesis.parts)
     for k in {*range(min(EXACT, len(found))), nothing}:
-        found[k] = _polished(fine, found[k])
+        found[k] = polished(fine, found[k])
     found.sort(key=lambda one: -one.log_score)
     found[:EXACT] = [_exactly(fine, one) for one in found[:EXACT]]
     # What was fitted with older columns, and is far behind, is counted where it is.
-    found += [_counted(refiner, one, one) for one in waiting if one.hypothesis.names not in known]
+    found += [counted(refiner, one, one) for one in waiting if one.hypothesis.names not in known]
     return sorted(found, key=lambda one: -one.log_score)
 
 
@@ -256,22 +256,27 @@ def _exactly(refiner: Refiner, fitted: Fitted) -> Fitted:
     exact = refiner.exact()
     there = rested(exact, exact.at(fitted.state, fitted.problem.at))
     found = refiner.at(there.state, there.problem.at)
-    found = _counted(refiner, found, found)
+    found = counted(refiner, found, found)
     if not found.left < NOISE:
         return fitted
     return replace(found, log_score=max(found.log_score, fitted.log_score))
 
 
-def _polished(fine: Refiner, fitted: Fitted) -> Fitted:
-    """Where it stays by fine differences, if it is likelier there, or as likely and leaves less."""
+def polished(fine: Refiner, fitted: Fitted) -> Fitted:
+    """Where it stays by fine differences, if it is likelier there, or as likely and leaves less.
+
+    What leaves no more than noise may is there.
+    """
+    if fitted.left < NOISE:
+        return fitted
     there = rested(fine, fine.at(fitted.state, fitted.problem.at))
-    found = _counted(fine, there, there)
+    found = counted(fine, there, there)
     ahead = found.log_score - fitted.log_score
     less = squares_of(found) < squares_of(fitted) - SETTLED
     return found if ahead > SETTLED or (less and ahead > -SETTLED) else fitted
 
 
-def _counted(refiner: Refiner, fitted: Fitted, there: Fitted) -> Fitted:
+def counted(refiner: Refiner, fitted: Fitted, there: Fitted) -> Fitted:
     """Where its nuisances are likeliest, with what it leaves there.
 
     That is of a feature, squared, in noise and the simulator's own error.
