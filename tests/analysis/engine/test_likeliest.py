@@ -3,6 +3,7 @@
 Data come of SciPy's solver; what is fitted is simulated by Heun's rule.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -41,7 +42,7 @@ def cause(name: str, side: Any, high: float, step: float, **more: Any) -> Candid
     return Candidate(name, name, side, (Term(name, name, "1", "", 0.0, high, step),), **more)
 
 
-class Simulated:
+class Simulated(ABC):
     """Samples by a function of the numbers, by name."""
 
     nuisances: tuple[Nuisance, ...]
@@ -51,8 +52,9 @@ class Simulated:
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         return [reduce([self.samples(self._numbers(one))[:, None]]) for one in points]
 
+    @abstractmethod
     def samples(self, numbers: dict[str, float]) -> Array:
-        raise NotImplementedError
+        """What is recorded without noise, shape (n,), by name of number."""
 
     def _numbers(self, point: Point) -> dict[str, float]:
         pairs = zip(self.nuisances, point.nuisance, strict=True)
@@ -189,6 +191,7 @@ def heated() -> Diagnosis:
 
 
 def test_what_a_dominant_law_hides_is_led_to_where_it_fits(heated: Diagnosis) -> None:
+    assert heated.judgement is not None
     causes = {one.name: one for one in heated.judgement.causes}
     assert heated.verdict == "explained"
     assert set(causes) == {"ends", "convection"}
@@ -204,6 +207,7 @@ def test_parameters_that_nothing_tells_stay_where_they_are_likeliest(heated: Dia
 
 def test_a_moment_that_was_screened_at_a_wrong_one_is_found_beside_another_law() -> None:
     found = diagnose(Loaded())
+    assert found.judgement is not None
     causes = {one.name: one for one in found.judgement.causes}
     assert found.verdict == "explained"
     assert set(causes) == {"coulomb", "load"}
