@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
@@ -251,7 +252,11 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
     )  # fmt: skip
     exact = effect.acts.side in ("parameter", "cell", "camera", "clock", "drive")
     form = policy.form_share if policy.form_share is not None else NUMBER if exact else LAW
-    wholes = _wholes(magnitudes[0]) if len(magnitudes) == 1 and magnitudes[0].per_cable else ()
+    wholes: tuple[tuple[str, ...], ...] = ()
+    if effect.name == "geometry":
+        wholes = _shifted(magnitudes)
+    elif len(magnitudes) == 1 and magnitudes[0].per_cable:
+        wholes = _wholes(magnitudes[0])
     return Candidate(
         name=effect.name,
         title=effect.title,
@@ -260,7 +265,7 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
         shapes=shapes,
         form_share=form,
         together=policy.together,
-        shareable=len(magnitudes) == 1,
+        shareable=len(magnitudes) == 1 or effect.name == "geometry",
         combinations=wholes,
         chosen_terms=12 if effect.name == "geometry" else 0,
         family=FAMILIES.get(effect.name, ""),
@@ -283,6 +288,18 @@ def _wholes(parameter: Parameter) -> tuple[tuple[str, ...], ...]:
     """All cables, the upper and the lower four: sets that often share their fate."""
     sets = (CABLE_NUMBERS, CABLE_NUMBERS[:4], CABLE_NUMBERS[4:])
     return tuple(tuple(f"{parameter.name}@{cable}" for cable in one) for one in sets)
+
+
+def _shifted(parameters: Sequence[Parameter]) -> tuple[tuple[str, ...], ...]:
+    """Posts or plates that were measured as one: all points of a kind, along one axis or any."""
+    bases = [one for one in parameters if one.name.startswith("base")]
+    anchors = [one for one in parameters if one.name.startswith("anchor")]
+    kinds = [bases, anchors, *([one] for one in parameters)]
+    return tuple(
+        tuple(chain.from_iterable(sets))
+        for kind in kinds
+        for sets in zip(*map(_wholes, kind), strict=True)
+    )
 
 
 def _harmonic(effect: Effect) -> Candidate:

@@ -20,7 +20,7 @@ from analysis.engine.hypothesis import Part
 from analysis.engine.instead import begun_instead, instead
 from analysis.engine.kin import lead_from
 from analysis.engine.ring_samples import Samples
-from analysis.engine.screen import Scored, Screen, groups
+from analysis.engine.screen import Scored, Screen
 from analysis.engine.state import State
 from analysis.engine.system import Array, Candidate, System
 
@@ -198,7 +198,7 @@ def _itself(found: Faint, candidates: Mapping[str, Candidate], name: str) -> Sco
     terms = [one.name for one in candidates[name].terms]
     part = state.hypothesis.parts[name]
     columns = np.zeros((len(found.problem.residual), len(terms)))
-    for group, place in zip(groups(part), magnitudes, strict=True):
+    for group, place in zip(part.groups(candidates[name]), magnitudes, strict=True):
         columns[:, terms.index(group[0])] = found.own[name][:, place]
     asked = Part(part.terms, part.shared, candidates[name].variants()[0])
     return without(found, candidates, name, columns).with_part(name, asked)

@@ -178,7 +178,7 @@ def _simpler(screen: Screen, scored: Scored, nothing: float) -> list[Scored]:
     (name,) = set(scored.hypothesis.names) - set(screen.on.names)
     candidate = screen.candidates[name]
     every = tuple(one.name for one in candidate.terms)
-    if not candidate.shareable or len(every) < 2 or candidate.together:
+    if not candidate.spreads or candidate.together:
         return [scored]
     part = Part(every, True, scored.hypothesis.parts[name].shapes)
     alike = screen.with_part(name, part, like=scored)

@@ -185,7 +185,7 @@ class Finder:
             for name, part in one.hypothesis.parts.items():
                 candidate = self._candidates[name]
                 every = tuple(term.name for term in candidate.terms)
-                if candidate.shareable and len(every) > 1 and (part.shared or part.terms != every):
+                if candidate.spreads and (part.shared or part.terms != every):
                     wide = screen.with_terms(name, every)
                     self.keep(self._refiner.fit(wide))
 

@@ -29,7 +29,7 @@ class Part:
     terms
         Names of the terms that are on.
     shared
-        Whether they have one value.
+        Whether those of one parameter have one value.
     shapes
         The shapes' values, by name.
     """
@@ -38,10 +38,9 @@ class Part:
     shared: bool = False
     shapes: Mapping[str, float] = field(default_factory=dict)
 
-    @property
-    def free(self) -> int:
-        """Number of free magnitudes."""
-        return 1 if self.shared else len(self.terms)
+    def groups(self, candidate: Candidate) -> tuple[tuple[str, ...], ...]:
+        """Terms that have one value, each group a free magnitude."""
+        return candidate.groups(self.terms, self.shared)
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ def part_log_prior(candidate: Candidate, part: Part) -> float:
     total = LOG_ODDS + log(candidate.prior)
     if not candidate.together and len(candidate.terms) > 1:
         total -= _log_choices(candidate, part)
-    free = 0 if candidate.fixed else part.free
+    free = 0 if candidate.fixed else len(part.groups(candidate))
     shapes = sum(not shape.whole for shape in candidate.shapes_of(part.terms))
     tried = 1
     for shape in candidate.shapes:

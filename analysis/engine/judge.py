@@ -217,8 +217,8 @@ def doubt_of(
 
 def _any_would_do(chosen: Fitted, candidate: Candidate) -> float:
     """The probability that a cause was chosen for what it can take up, and not for being there."""
-    picked = bool(candidate.chosen_terms) and chosen.hypothesis.parts[candidate.name].free > MANY
-    return ELSE if picked else 0.0
+    free = len(chosen.hypothesis.parts[candidate.name].groups(candidate))
+    return ELSE if candidate.chosen_terms and free > MANY else 0.0
 
 
 def _idle(

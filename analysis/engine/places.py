@@ -56,7 +56,9 @@ def placed_again(
             continue
         there = replace(other.hypothesis.parts[name], shapes=part.shapes)
         # What needs fewer numbers is worth asking for itself.
-        asks = 0.0 if there.free < part.free else ASKS
+        own = candidates[name]
+        fewer = len(there.groups(own)) < len(part.groups(own))
+        asks = 0.0 if fewer else ASKS
         if other.log_score < itself.log_score + asks:
             continue
         scored = replace(other, hypothesis=other.hypothesis.plus(name, there))

@@ -164,49 +164,45 @@ class Screen:
             right = right[fixed:] - cross @ right[:fixed]
             matrix = matrix[fixed:, fixed:] - cross @ matrix[:fixed, fixed:]
         names = tuple(term.name for term in candidate.terms)
-        bounds = [limits(candidate, (name,)) for name in names]
-        lows = np.array([low for low, _ in bounds])
-        highs = np.array([high for _, high in bounds])
+        bounds = {name: limits(candidate, (name,)) for name in names}
+        limit = candidate.chosen_terms or len(names)
 
-        def gain(chosen: Sequence[int], shared: bool) -> float:
-            pick = np.asarray(chosen, dtype=int)
-            if shared:
-                m = np.array([[matrix[np.ix_(pick, pick)].sum()]])
-                b = np.array([right[pick].sum()])
-                low, high = lows[pick].max(keepdims=True), highs[pick].min(keepdims=True)
-            else:
-                m, b, low, high = matrix[np.ix_(pick, pick)], right[pick], lows[pick], highs[pick]
+        def gain(groups: Sequence[Sequence[str]]) -> float:
+            adds = np.array([[name in group for name in names] for group in groups], dtype=float)
+            low = np.array([max(bounds[one][0] for one in group) for group in groups])
+            high = np.array([min(bounds[one][1] for one in group) for group in groups])
+            m, b = adds @ matrix @ adds.T, adds @ right
             e = bounded(m, b, low, high)
             return float(2.0 * b @ e - e @ m @ e)
 
-        every = range(len(names))
+        def ways(terms: Sequence[str]) -> Iterator[tuple[tuple[str, ...], bool, float]]:
+            whole = tuple(one for one in names if one in terms)
+            alike, each = candidate.groups(whole, True), candidate.groups(whole, False)
+            if candidate.shareable and len(alike) < min(len(each), limit + 1):
+                yield whole, True, gain(alike)
+            if len(each) <= limit:
+                yield whole, False, gain(each)
+
         if candidate.together or len(names) == 1:
-            if candidate.shareable and len(names) > 1:
-                yield names, True, gain(list(every), True)
-            yield names, False, gain(list(every), False)
+            yield from ways(names)
             return
         # One by one, the best next, each with its own value.
-        chosen: list[int] = []
-        limit = candidate.chosen_terms or len(names)
+        chosen: list[str] = []
         current = 0.0
         while len(chosen) < limit:
-            gains = {i: gain([*chosen, i], False) for i in every if i not in chosen}
+            gains = {
+                one: gain([(k,) for k in (*chosen, one)]) for one in names if one not in chosen
+            }
             if not gains:
                 break
-            best = max(gains, key=lambda i: gains[i])
+            best = max(gains, key=lambda one: gains[one])
             if gains[best] - current < 2.0 * LOG_COST and chosen:
                 break
             chosen.append(best)
             current = gains[best]
-            yield tuple(names[i] for i in sorted(chosen)), False, current
-            if candidate.shareable and len(chosen) > 1:
-                yield tuple(names[i] for i in sorted(chosen)), True, gain(chosen, True)
-        for whole in candidate.combinations:
-            pick = [names.index(one) for one in whole]
-            if len(pick) <= limit:
-                if candidate.shareable:
-                    yield whole, True, gain(pick, True)
-                yield whole, False, gain(pick, False)
+            yield from ways(chosen)
+        for combination in candidate.combinations:
+            yield from ways(combination)
 
     def _quick_frame(self, candidate: Candidate) -> tuple[Frame, Array]:
         share = candidate.form_share * LOOSE_FORM
@@ -251,7 +247,7 @@ class Screen:
             candidate = self.candidates[name]
             columns[name] = grouped(candidate, self.terms[name, variants[name]], part)
             done[name] = np.zeros(len(self.problem.residual))
-            for group in groups(part):
+            for group in part.groups(candidate):
                 low_one, high_one = limits(candidate, group)
                 lows.append(low_one)
                 highs.append(high_one)
@@ -277,7 +273,7 @@ class Screen:
             values |= self._state.moved(moved).term_values()
         at = kept
         for name in new:
-            for group in groups(hypothesis.parts[name]):
+            for group in hypothesis.parts[name].groups(self.candidates[name]):
                 value = magnitude(self.candidates[name], group, float(weighed.estimate[at]))
                 values |= {(name, term): value for term in group}
                 at += 1
@@ -291,16 +287,14 @@ def _shapes(candidate: Candidate, look: int) -> Mapping[str, float]:
     return variants[look % len(variants)]
 
 
-def groups(part: Part) -> tuple[tuple[str, ...], ...]:
-    """Terms that share a value."""
-    return (part.terms,) if part.shared else tuple((one,) for one in part.terms)
-
-
 def grouped(candidate: Candidate, columns: Array, part: Part) -> Array:
     """Columns of terms, those with one value added up, shape (f, free numbers)."""
     names = [term.name for term in candidate.terms]
     return np.stack(
-        [columns[:, [names.index(one) for one in group]].sum(axis=1) for group in groups(part)],
+        [
+            columns[:, [names.index(one) for one in group]].sum(axis=1)
+            for group in part.groups(candidate)
+        ],
         axis=1,
     )
 

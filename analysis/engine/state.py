@@ -7,7 +7,7 @@ from math import exp, log
 import numpy as np
 
 from analysis.engine.hypothesis import Hypothesis, Part
-from analysis.engine.screen import Scored, groups, limits
+from analysis.engine.screen import Scored, limits
 from analysis.engine.system import Array, Candidate, Point, Setting, Shape
 
 SHAPE_STEP = 0.05
@@ -70,7 +70,7 @@ class State:
         numbers, values = [], []
         for name in hypothesis.names:
             candidate, part = candidates[name], hypothesis.parts[name]
-            for group in groups(part):
+            for group in part.groups(candidate):
                 low, high = limits(candidate, group)
                 value = magnitudes[name, group[0]]
                 size = next(t.step for t in candidate.terms if t.name == group[0])
@@ -230,9 +230,10 @@ class State:
                 continue
             candidate = self.candidates[name]
             every = tuple(one.name for one in candidate.terms)
-            if candidate.shareable and not candidate.together and len(every) > 1:
-                mean = sum(magnitudes.get((name, one), 0.0) for one in every) / len(every)
-                magnitudes |= {(name, one): mean for one in every}
+            if candidate.spreads and not candidate.together:
+                for group in candidate.groups(every, True):
+                    mean = sum(magnitudes.get((name, one), 0.0) for one in group) / len(group)
+                    magnitudes |= {(name, one): mean for one in group}
                 hypothesis = hypothesis.plus(name, Part(every, True, part.shapes))
         if hypothesis.key == self.hypothesis.key:
             return self

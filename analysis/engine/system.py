@@ -218,9 +218,9 @@ class Candidate:
     together
         Terms act one by one (False), or only all at once (True).
     chosen_terms
-        At most so many terms at once; 0: no limit.
+        At most so many free numbers at once; 0: no limit.
     shareable
-        Terms at several places may have one value.
+        Terms of one parameter at several places may have one value.
     combinations
         Sets of terms that are tried as wholes, beside single ones, such as the posts of a frame.
     prior
@@ -261,6 +261,20 @@ class Candidate:
     def kind(self) -> str:
         """Of what it is a law: its family's, or its own."""
         return self.family or self.name
+
+    @property
+    def spreads(self) -> bool:
+        """Whether it may be in all its places alike, and as well in a few, or of its own size."""
+        spread = len({one.parameter for one in self.terms}) < len(self.terms)
+        return spread and self.shareable and not self.chosen_terms
+
+    def groups(self, terms: Sequence[str], shared: bool) -> tuple[tuple[str, ...], ...]:
+        """Terms that have one value, in their order: where shared, all those of one parameter."""
+        if not shared:
+            return tuple((one,) for one in terms)
+        parameters = {one.name: one.parameter for one in self.terms}
+        kinds = dict.fromkeys(parameters[one] for one in terms)
+        return tuple(tuple(one for one in terms if parameters[one] == kind) for kind in kinds)
 
     def shapes_of(self, terms: Collection[str]) -> tuple[Shape, ...]:
         """Those that count where these terms are on."""

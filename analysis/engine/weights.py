@@ -120,16 +120,16 @@ def _by_chance(
         if not (fewer and fewer < set(best.hypothesis.names) and one.left > noise):
             continue
         share = (max(best.left, 1.0) + noise - 2.0) / (one.left + noise - 2.0)
-        numbers = _numbers(best.hypothesis) - _numbers(one.hypothesis)
+        numbers = _numbers(best.hypothesis, candidates) - _numbers(one.hypothesis, candidates)
         chance = 0.5 * max(FORMS - numbers, 0) * float(np.log(share))
         more = best.hypothesis.log_prior(candidates) - one.hypothesis.log_prior(candidates)
         found[i] = chance - more
     return found
 
 
-def _numbers(hypothesis: Hypothesis) -> int:
+def _numbers(hypothesis: Hypothesis, candidates: Mapping[str, Candidate]) -> int:
     """How many magnitudes are free."""
-    return sum(part.free for part in hypothesis.parts.values())
+    return sum(len(part.groups(candidates[name])) for name, part in hypothesis.parts.items())
 
 
 def _more_left(fitted: Sequence[Fitted], best: Fitted) -> Array:

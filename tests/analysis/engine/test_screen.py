@@ -115,3 +115,27 @@ def _scored(name: str, log_score: float, chi2: float) -> Scored:
     none = np.zeros(0)
     weighed = Weighed(log_score, none, np.zeros((0, 0)), none, chi2, none, none, 0.0)
     return Scored(hypothesis, log_score, weighed, {})
+
+
+def test_points_that_all_moved_the_same_way_have_one_value_for_each_axis() -> None:
+    """Eight points on three axes, moved along two of them: two numbers, and not sixteen."""
+    generator = np.random.default_rng(3)
+    terms = tuple(
+        Term(f"{axis}@{i}", axis, "m", str(i), -1.0, 1.0, 0.1) for axis in "xyz" for i in range(8)
+    )
+    names = tuple(one.name for one in terms)
+    moved = {"x": 0.3, "y": 0.0, "z": -0.2}
+    does = 30.0 * generator.normal(size=(60, 24))
+    whole = names[:8] + names[16:]
+    points = Candidate(
+        "points", "points", "parameter", terms, form_share=0.01, chosen_terms=6,
+        combinations=(names, whole),
+    )  # fmt: skip
+    problem = _left(does @ np.array([moved[one.parameter] for one in terms]))
+    best = Screen(problem, {"points": points}, {("points", 0): does}).best_of("points")
+    assert best is not None
+    part = best.hypothesis.parts["points"]
+    assert (part.terms, part.shared) == (whole, True)
+    assert part.groups(points) == (names[:8], names[16:])
+    assert best.values["points", "x@3"] == pytest.approx(0.3, rel=0.02)
+    assert best.values["points", "z@5"] == pytest.approx(-0.2, rel=0.02)
