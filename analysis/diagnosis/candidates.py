@@ -79,7 +79,10 @@ POLICIES: dict[str, Policy] = {
             "counted_share": (0.5,),
         }
     ),
-    "cable_relaxation": Policy(shapes={"relaxation_s": (0.03, 0.5)}, form_share=LINEAR),
+    # Fibres relax in a spectrum of times.
+    "cable_relaxation": Policy(
+        shapes={"relaxation_s": (0.03, 0.5), "branch_ratio": (2.0,)}, form_share=LINEAR
+    ),
     # Whoever made its drive may have reckoned with cables that push, as Eq. 16 has them.
     "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
     "cable_viscous": Policy(form_share=LINEAR),

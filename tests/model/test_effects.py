@@ -199,6 +199,18 @@ def test_relaxation_loses_most_at_one_over_tau() -> None:
     assert losses[1] == pytest.approx(0.5 * 0.1 * 1410 * 5e-3, rel=0.01)
 
 
+def test_two_branches_of_relaxation_lose_less_over_more_frequencies() -> None:
+    """Each has half of the share: w t / (1 + (w t)^2) at both times."""
+    effect, tau_s, ratio = library()["cable_relaxation"], 0.05, 9.0
+    for turns_tau in (0.2, 1.0, 3.0):
+        answer = cable_response(
+            effect, {"branch_ratio": ratio}, cycles=6, frequency_hz=turns_tau / (2 * np.pi * tau_s)
+        )
+        times = turns_tau * np.array([ratio**-0.5, ratio**0.5])
+        wanted = 0.1 * 1410 * 5e-3 * np.mean(times / (1.0 + times**2))
+        assert answer.quadrature[1] == pytest.approx(wanted, rel=0.01)
+
+
 def test_structural_damping_does_not_know_frequency() -> None:
     effect = library()["cable_structural"]
     wanted = 0.03 * 1410 * 5e-3
