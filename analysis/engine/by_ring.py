@@ -25,7 +25,7 @@ from analysis.engine.sharper import Sharper, Told, how_sharp, scales_of
 from analysis.engine.system import Array, Candidate, System
 from analysis.engine.until import Until
 from analysis.engine.way import STRAIN
-from analysis.engine.whole import whole_guesses
+from analysis.engine.whole import whole_guesses, whole_onward
 
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
@@ -166,6 +166,7 @@ def by_ring(
     else:
         screened, faintly = one_more(about, refiner), []
         single = [guessed(about, refiner, one) for one in screened]
+        single = [*whole_onward(system, refiner.candidates, nothing), *single]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
     first = _abreast(single) if nothing.left < FAINT else _of_one_kind(single)

@@ -36,6 +36,10 @@ ASKS, POOR = 8.0, 0.2
 """What is said to explain so much beside what is on, squared, is led as it is promised; and what is
 said to leave so much more of a sample hides nowhere near."""
 
+ONWARD, EXPLAINS = 0.2, 0.5
+"""Of the time: so much farther than parameters alone lead is what is there as a whole from then on
+looked for; and there it leaves no more than this share of the squared misfit."""
+
 
 def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Faint) -> list[Guess]:
     """Candidates that are there or not, from where they leave least, the best first.
@@ -69,6 +73,46 @@ def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Fa
                 assert best.state is not None
                 rises = 0.5 * (cost_of(nothing) - cost_of(best))
                 guesses.append(Guess(best.state, best.nuisance, alone + rises))
+    return sorted(guesses, key=lambda one: -one.log_score)
+
+
+def whole_onward(
+    system: System, candidates: Mapping[str, Candidate], nothing: Followed
+) -> list[Guess]:
+    """What is there as a whole from where parameters alone foretell nothing more, the best first.
+
+    What begins only then does nothing to what was led so far, and straight lines about it are
+    silent. So each form is simulated as it stands, and looked at a little farther.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    candidates
+        By name.
+    nothing
+        How far parameters alone led.
+    """
+    share, _ = nothing.reached
+    if not 0.0 < share < 1.0:
+        return []
+    at = nothing.about or nothing
+    none = State.at(Hypothesis(), {}, candidates)
+    states = [
+        none.plus(one.name, Part(terms, False, shapes), {t.name: t.step for t in one.terms})
+        for one in candidates.values()
+        if one.fixed
+        for terms in [tuple(t.name for t in one.terms)]
+        for shapes in one.variants()
+    ]
+    starts = [Followed(at.nuisance, state) for state in (None, *states)]
+    samples = Samples(system, everything=True, share=min(share + ONWARD, 1.0))
+    alone, *left = [float(one @ one) for one in samples.residuals([one.point for one in starts])]
+    guesses = [
+        Guess(state, at.nuisance, 0.5 * (alone - one))
+        for state, one in zip(states, left, strict=True)
+        if one < EXPLAINS * alone
+    ]
     return sorted(guesses, key=lambda one: -one.log_score)
 
 

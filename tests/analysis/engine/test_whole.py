@@ -9,6 +9,7 @@ import pytest
 
 from analysis.engine.all_samples import cost_of
 from analysis.engine.faint import faint
+from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
@@ -25,7 +26,7 @@ from analysis.engine.system import (
     Shape,
     Term,
 )
-from analysis.engine.whole import whole_beside, whole_guesses
+from analysis.engine.whole import whole_beside, whole_guesses, whole_onward
 
 T_S = np.arange(0.0, 10.0, 0.01)
 NOISE = 0.02
@@ -53,6 +54,7 @@ class Channels:
     name = "channels"
     nuisances = (Nuisance("gain 1", KNOWN, "1"), Nuisance("gain 2", LOOSE, "1"))
     candidates = (there_or_not("swapped"), there_or_not("glitch"), DRIFTS)
+    glitch = LATE
 
     def __init__(self, value: Array) -> None:
         noisy = value + NOISE * np.random.default_rng(7).standard_normal(value.shape)
@@ -74,7 +76,9 @@ class Channels:
         slow = point.effects.get("slow")
         if slow is not None:
             seen = seen + slow.values["size"] * SLOW
-        return np.asarray(seen + LATE if glitch is not None and glitch.shapes["form"] else seen)
+        return np.asarray(
+            seen + self.glitch if glitch is not None and glitch.shapes["form"] else seen
+        )
 
 
 def guessed(value: Array) -> list[tuple[tuple[str, ...], float, Array]]:
@@ -122,3 +126,30 @@ def test_beside_what_is_on_they_are_led_out_of_the_gains_as_well(swapped: bool) 
 
 def test_what_does_as_straight_lines_say_is_not_led() -> None:
     assert guessed(TONES + LATE) == []
+
+
+class Breaking(Channels):
+    """One of them is off from 6 s on."""
+
+    glitch = np.column_stack([(T_S > 6.0) * 1.0, 0.0 * T_S])
+
+
+@pytest.mark.parametrize(
+    ("truly", "reached", "told"),
+    [
+        (TONES + Breaking.glitch, 0.5, ["glitch"]),
+        (TONES + Breaking.glitch, 0.2, []),
+        (TONES + Breaking.glitch, 0.0, []),
+        (TONES, 0.5, []),
+    ],
+    ids=["begins then", "begins later", "nothing is foretold", "nothing begins"],
+)
+def test_what_is_there_as_a_whole_from_then_on_is_looked_for_where_parameters_foretell_no_more(
+    truly: Array, reached: float, told: list[str]
+) -> None:
+    system = Breaking(truly)
+    known = {one.name: one for one in system.candidates}
+    nothing = Followed(np.zeros(2), None, share=reached, costs={reached: 100.0})
+    guesses = whole_onward(system, known, nothing)
+    assert [name for one in guesses for name in one.hypothesis.names] == told
+    assert all(one.log_score > 1000.0 for one in guesses)
