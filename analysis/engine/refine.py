@@ -24,7 +24,7 @@ FAR_SIGMAS = 3.0
 SHORTER = 0.4
 """A step that went too far is taken again, this much of it."""
 
-MOST_SETTLING, STILL = 6, 0.01
+MOST_SETTLING, STILL = 6, 0.001
 """Steps to where the nuisances are likeliest, and what is no step, in sigmas."""
 
 SHORTEST = 2

@@ -7,7 +7,7 @@ of what that misses, nothing above all. So the likeliest, and nothing, are fitte
 everything simulated anew, and what they leave is counted in noise alone.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,9 @@ from analysis.engine.cause import within_sigma
 from analysis.engine.doubt import squares_of
 from analysis.engine.finder import SMALL
 from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed
 from analysis.engine.judge import NOISE
+from analysis.engine.moved import freed, moved_far
 from analysis.engine.refine import FAR_SIGMAS, SETTLED, Refiner
 from analysis.engine.state import State
 from analysis.engine.variance import base_variance
@@ -81,15 +83,39 @@ def settled(
     known = {one.hypothesis.names for one in done.values()}
     found = [counted(refiner, one, refiner.settle(one)) for one in done.values()]
     found.sort(key=lambda one: -one.log_score)
+    for one in _freed(refiner, found[:EXACT], known):
+        found.append(counted(refiner, one, refiner.settle(one)))
+    found.sort(key=lambda one: -one.log_score)
     fine = refiner.finely()
     nothing = next(k for k, one in enumerate(found) if not one.hypothesis.parts)
     for k in {*range(min(EXACT, len(found))), nothing}:
         found[k] = polished(fine, found[k])
     found.sort(key=lambda one: -one.log_score)
+    found = [*found, *_without_idle(fine, found[:EXACT], found)]
+    found.sort(key=lambda one: -one.log_score)
     found[:EXACT] = [_exactly(fine, one) for one in found[:EXACT]]
     # What was fitted with older columns, and is far behind, is counted where it is.
     found += [counted(refiner, one, one) for one in waiting if one.hypothesis.names not in known]
     return sorted(found, key=lambda one: -one.log_score)
+
+
+def _freed(
+    refiner: Refiner, fitted: Sequence[Fitted], known: set[tuple[str, ...]]
+) -> Iterator[Fitted]:
+    """Hypotheses with what moved too far in others as a cause of its own, where none has that.
+
+    Nothing is searched for it: the simulation is the same, and what it costs is not.
+    """
+    for one in fitted:
+        at = Followed(one.point.nuisance, one.state)
+        for cause in moved_far(refiner.system.nuisances, at.nuisance):
+            names = tuple(sorted({*one.hypothesis.names, cause}))
+            if cause in refiner.candidates and names not in known:
+                known.add(names)
+                start = freed(refiner.system, refiner.candidates, at, cause)
+                assert start.state is not None
+                there = refiner.at(start.state, refiner.directions_of(start.nuisance))
+                yield rested(refiner, there)
 
 
 def rested(refiner: Refiner, start: Fitted, at_least: float = -np.inf) -> Fitted:
@@ -241,6 +267,23 @@ def _of_other_shape(refiner: Refiner, fitted: Fitted) -> State | None:
                 if score > least:
                     best, least = tried, score
     return None if best is state else best
+
+
+def _without_idle(
+    fine: Refiner, polished: Sequence[Fitted], known: Sequence[Fitted]
+) -> Iterator[Fitted]:
+    """What was polished to where one of its causes is next to nothing, without that.
+
+    The others may have come there beside it alone.
+    """
+    for one in polished:
+        for name in one.hypothesis.names:
+            if len(one.hypothesis.parts) > 1 and within_sigma(one, name):
+                rest = one.hypothesis.without(name).names
+                same = [other.log_score for other in known if other.hypothesis.names == rest]
+                there = rested(fine, fine.at(one.state.without(name), one.problem.at))
+                if there.log_score > max(same, default=-np.inf) + SETTLED:
+                    yield counted(fine, there, there)
 
 
 def _exactly(refiner: Refiner, fitted: Fitted) -> Fitted:

@@ -47,12 +47,19 @@ class Standing:
         self.lens = lens
         self.data = data
         self.candidates = {one.name: one for one in system.candidates}
+        self._same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
         self._problem = calibrated.problem
         self.calibrated = calibrated
         self._rotation = calibrated.rotation
         self.anew = anew
         self._finely = False
         if anew:
+            # A number that moves has no error of form, whether it is called cause or nuisance.
+            self.candidates |= {
+                one.name: replace(one, form_share=0.0)
+                for one in system.candidates
+                if all((one.name, term.name) in self._same for term in one.terms)
+            }
             # A direction that is not seen here may be seen with a candidate on.
             self._rotation = np.eye(len(calibrated.at))
             self._problem = replace(
@@ -158,6 +165,7 @@ class Standing:
         if self.anew:
             anew = nuisances_beside(self.system, self.lens, there, point.effects, self._root)
             problem = replace(problem, nuisance=anew)
+            columns = self._as_nuisances(state, columns, anew)
         by_name = {name: columns[:, state.places(name)] for name in names}
         weighed = weigh(
             problem,
@@ -198,6 +206,21 @@ class Standing:
             at_limit=state.at_edge(),
             state=state,
         )
+
+    def _as_nuisances(self, state: State, columns: Array, nuisance: Array) -> Array:
+        """Columns, what a nuisance is as well by just what that does: no more is told of either.
+
+        Two differences of one number, each a little off, would tell which of the two it is.
+        """
+        sigmas = np.array([one.sigma for one in self.system.nuisances])
+        columns = columns.copy()
+        for k, i in enumerate(state.free):
+            number = state.numbers[i]
+            tied = [self._same.get((number.candidate, term)) for term in number.terms]
+            if tied and None not in tied:
+                which = [one for one in tied if one is not None]
+                columns[:, k] = (nuisance[:, which] / sigmas[which]).sum(axis=1)
+        return columns
 
     @property
     def _root(self) -> Array:

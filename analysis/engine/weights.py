@@ -37,7 +37,7 @@ however little scores count: their temper has forgiven laws their form, all of t
 
 MOST_OF_STRAIN = 6.0
 """And by no more than this of what parameters cost that are far from what is known of them: no
-error of form makes that likelier."""
+error of form makes that likelier. Where nothing rings, by `TEMPER`: they are where they stay."""
 
 SIMPLER, MOST_SHAPES = 0.7, 2
 """Of laws of one family, each number of shape takes this off the logarithm of odds, up to so many:
@@ -74,11 +74,13 @@ def weights_of(
     temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
     if settled:
         temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
+        if best.left < noise:
+            scores = _strained(scores, fitted, temper, TEMPER)
     elif np.isfinite(best.left):
         times = max((best.left - 1.0) / (noise - 1.0), 1.0)
         temper = min(temper, MOST_AT_NOISE * times**2)
         if times == 1.0:
-            scores = _strained(scores, fitted, temper)
+            scores = _strained(scores, fitted, temper, MOST_OF_STRAIN)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])
@@ -138,10 +140,10 @@ def _more_left(fitted: Sequence[Fitted], best: Fitted) -> Array:
     return np.asarray(OF_LEFT * np.log(np.maximum(left / max(best.left, 1.0), 1.0)))
 
 
-def _strained(scores: Array, fitted: Sequence[Fitted], temper: float) -> Array:
+def _strained(scores: Array, fitted: Sequence[Fitted], temper: float, most: float) -> Array:
     """Scores in which parameters that are bent count for more, where the others count for less."""
     strain = np.array([0.5 * float(one.point.nuisance @ one.point.nuisance) for one in fitted])
-    return scores - strain * max(temper / MOST_OF_STRAIN - 1.0, 0.0)
+    return scores - strain * max(temper / most - 1.0, 0.0)
 
 
 def _among_kin(

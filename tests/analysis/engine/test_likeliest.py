@@ -162,6 +162,32 @@ class Loaded(Simulated):
         )
 
 
+class Heavier(Loaded):
+    """The flywheel with inertia to spare, which may be a cause as well."""
+
+    nuisances = (
+        Nuisance("inertia", 0.02, "1", cause="added", term="added"),
+        Nuisance("damper", 0.05, "1"),
+    )
+    candidates = (
+        *Loaded.candidates,
+        cause("added", "parameter", 0.5, 0.02, form_share=0.02),
+    )
+
+    def __init__(self, added: float, coulomb: float) -> None:
+        def rate(t_s: float, v: Array) -> Array:
+            held = coulomb * np.tanh(v / 0.01)
+            return np.asarray((torque(t_s) - 0.97 * v - held) / (1.01 + added))
+
+        found = solve_ivp(rate, (0.0, 60.0), [0.0], t_eval=TURNED_S, rtol=1e-9, max_step=0.02)
+        noise = np.random.default_rng(5).normal(0.0, 1e-4, len(TURNED_S))
+        self.record(TURNED_S, found.y[0] + noise, 1e-4)
+
+    def samples(self, numbers: dict[str, float]) -> Array:
+        inertia = numbers["inertia"] + numbers.get("added", 0.0)
+        return super().samples({**numbers, "inertia": inertia})
+
+
 @numba.njit
 def torque(t_s):  # type: ignore[no-untyped-def]
     """What drives the flywheel [N m]."""
@@ -214,3 +240,19 @@ def test_a_moment_that_was_screened_at_a_wrong_one_is_found_beside_another_law()
     assert causes["load"].shapes["from_s"] == pytest.approx(31.7, abs=0.1)
     for one in causes.values():
         assert one.values[one.name] == pytest.approx(0.1, abs=4.0 * one.sigmas[one.name])
+
+
+@pytest.mark.parametrize("coulomb", [0.0, 0.1])
+def test_a_number_that_moved_seven_sigmas_is_a_cause_alone_and_beside_another(
+    coulomb: float,
+) -> None:
+    """To first order inertia does all that is recorded: an error of form of it would hide all."""
+    found = diagnose(Heavier(0.13, coulomb))
+    assert found.judgement is not None
+    causes = {one.name: one for one in found.judgement.causes}
+    assert set(causes) == ({"added", "coulomb"} if coulomb else {"added"})
+    assert found.verdict == ("explained" if coulomb else "parameter")
+    # What is known of the nuisance is what is known of the cause.
+    assert causes["added"].sigmas["added"] == pytest.approx(0.02, rel=0.05)
+    assert causes["added"].values["added"] == pytest.approx(0.14, abs=2e-3)
+    assert found.judgement.chosen.point.nuisance[0] == pytest.approx(0.0, abs=0.1)
