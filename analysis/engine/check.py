@@ -1,8 +1,8 @@
 """What the engine is given, checked before anything is made of it.
 
-What is stated is looked at (`stated`), and the simulator is asked once: for the nominal point, and
-of a system that does not ring for each parameter and each magnitude alone as well. A system that
-rings takes long to simulate, and is mostly a machine that states itself.
+What is stated is looked at (`recorded`, `stated`), and the simulator is asked: for the nominal
+point twice, and of a system that does not ring for each parameter and each magnitude alone as well.
+A system that rings takes long to simulate, and is mostly a machine that states itself.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,13 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.part import rings
-from analysis.engine.stated import (
-    check_bundles,
-    check_candidates,
-    check_lists,
-    check_nuisances,
-    name_of,
-)
+from analysis.engine.recorded import check_bundles, name_of
+from analysis.engine.stated import check_candidates, check_lists, check_nuisances
 from analysis.engine.system import Bundle, Candidate, Point, Prediction, Setting, System
 from cdpr8.errors import DataError
 
@@ -61,6 +56,14 @@ def check(system: System) -> tuple[str, ...]:
     nominal = Point(np.zeros(len(system.nuisances)))
     (found,) = _simulated(system, [nominal], "the nominal point")
     _check_prediction(system.bundles, found, "the nominal point")
+    (again,) = _simulated(system, [nominal], "the nominal point")
+    if _changes(system.bundles, found, again):
+        raise DataError(
+            "the nominal point, simulated again, comes to something else",
+            allowed="the same for the same point",
+            where="simulate",
+            remedy="draw no random numbers, keep no state, and hand `reduce` arrays of their own",
+        )
     return () if rings(system) else _each(system, nominal, found)
 
 

@@ -14,6 +14,7 @@ from cdpr8.errors import DataError
 
 T_S = np.arange(0.0, 20.0, 0.1)
 NOISE = 0.01
+DRAWN = np.random.default_rng(2)
 
 
 class Line:
@@ -153,6 +154,10 @@ WRONG: dict[str, tuple[Callable[[], Any], str, str]] = {
     "flat value": (lambda: bundle(value=VALUE[:, 0]), "value (200,)", "value[:, None]"),
     "names": (lambda: bundle(names="x"), "names is 'x'", '("x",)'),
     "units": (lambda: bundle(units=("V", "V")), "units is", "a tuple of 1"),
+    "looked at twice": (lambda: bundle(segments=(Segment(0.0, 9.05, name="first"),
+                                                 Segment(8.0, 20.0, name="last"))),
+                        "11 samples lie in two segments ('first', 'last')", "at 8 s"),
+    "all held out": (lambda: segment(held_out=True), "every segment is held out", "fit"),
     "scalar noise": (lambda: bundle(covariance=np.array(1.0)), "has shape ()", "(1, 1)"),
     "no noise": (lambda: bundle(covariance=np.zeros((1, 1))), "not positive definite", "bundle 0"),
     "negative noise": (lambda: bundle(covariance=-np.eye(1)), "not positive definite", "bundle 0"),
@@ -199,6 +204,9 @@ WRONG: dict[str, tuple[Callable[[], Any], str, str]] = {
     "NaN on": (lambda: simulated(
         lambda a, p: [a.predict(p)[0] * (np.nan if "bend" in p.effects else 1.0)]
     ), "'bend' at its step is not finite", "smaller"),
+    "drawn": (lambda: simulated(
+        lambda a, p: [a.predict(p)[0] + DRAWN.normal()]
+    ), "again", "random"),
     "deaf": (lambda: simulated(lambda a, _: a.predict(Point(np.zeros(2)))), "neither a", "effects"),
     "no parameter": (lambda: simulated(
         lambda a, p: a.predict(replace(p, nuisance=np.zeros(2)))
