@@ -42,7 +42,9 @@ def as_lost(candidate: Candidate, lost_s: Sequence[float]) -> Candidate:
         When a frame was lost, s; not empty.
     """
     first = lost_s[0]
-    at_once = sum(1 for at in lost_s if at == first)
+    # More at one moment than one number holds are lost again just then.
+    most = next(round(one.high) for one in candidate.shapes if one.name == "count")
+    at_once = min(sum(1 for at in lost_s if at == first), most)
     told = {"count": float(at_once), "moment": first}
     told |= {f"again_{k}_s": at for k, at in enumerate(lost_s[at_once:], start=1)}
     shapes = tuple(

@@ -11,6 +11,7 @@ from analysis.diagnosis.candidates import candidates
 from analysis.diagnosis.lost_frames import lost_frames
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
+from analysis.engine.stated import check_candidates
 from analysis.engine.system import Point
 from cdpr8.rigfile import Excitation
 from model.simulator import run
@@ -54,3 +55,13 @@ def test_what_poses_show_is_all_that_is_tried() -> None:
     (shapes,) = as_lost(dropped, (3.5, 3.5, 6.25)).variants()
     assert (shapes["count"], shapes["moment"]) == (2.0, 3.5)
     assert [shapes[f"again_{k}_s"] for k in (1, 2)] == [6.25, 0.0]
+
+
+def test_more_at_one_moment_than_one_number_holds_are_lost_again_just_then() -> None:
+    """As a drive's frequency that is off looks, once it is half a cycle off."""
+    (dropped,) = candidates(["frames_dropped"], [(1.0, 8.0)], FRAME_HZ)
+    known = as_lost(dropped, (3.5,) * 5)
+    check_candidates([known])
+    (shapes,) = known.variants()
+    assert (shapes["count"], shapes["moment"]) == (3.0, 3.5)
+    assert [shapes[f"again_{k}_s"] for k in (1, 2, 3)] == [3.5, 3.5, 0.0]
