@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 FAR = 1e6
 """Where a simulation blew up, everything is this far off."""
 
+LEAST_ROWS = 3
+"""Of a simulation, to see anything by: one that blew up at once has fewer."""
+
 
 @dataclass(frozen=True)
 class Sight:
@@ -44,7 +47,12 @@ class Sight:
 
 
 def seen_by(recording: Recording, simulation: Simulation, sight: Sight) -> Prediction:
-    """What cells and camera would report at the samples of a run."""
+    """What cells and camera would report at the samples of a run.
+
+    Of a simulation that blew up at once there is nothing to be seen: everything is far off.
+    """
+    if len(simulation.t_s) < LEAST_ROWS:
+        return [np.full(one.value.shape, FAR) for one in recording.bundles]
     tensions = recording.bundles[: len(recording.cables)]
     longest = max(len(one.t_s) for one in tensions)
     times = np.full((longest, 8), simulation.t_s[0])

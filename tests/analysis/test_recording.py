@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.diagnosis.recording import recording, segments
-from analysis.diagnosis.sight import Sight, seen_by
+from analysis.diagnosis.sight import FAR, Sight, seen_by
 from cdpr8.runfolder import Run, load_run, sample_data_folder
 from model import simulate
 
@@ -66,6 +66,17 @@ def test_an_averaged_sample_is_simulated_as_an_average(run: Run) -> None:
     missed = tension(0.0, float(np.var(offsets_s))) - mean
     assert np.sqrt(np.mean(lost**2)) > 5e-4
     assert np.sqrt(np.mean(missed**2)) < 0.2 * np.sqrt(np.mean(lost**2))
+
+
+def test_of_a_simulation_that_blew_up_at_once_nothing_is_seen(run: Run) -> None:
+    looked = replace(recording(run, None), averaged_s2=(1e-7,) * 8)
+    happened = simulate(run.rig, run.start.excitation, output_rate_hz=333.0)
+    begun = replace(happened, t_s=happened.t_s[:1], pose=happened.pose[:1],
+                    tension_n=happened.tension_n[:1])  # fmt: skip
+    seen = seen_by(looked, begun, Sight((), 0.0, np.zeros(6), np.zeros(8)))
+    for one, bundle in zip(seen, looked.bundles, strict=True):
+        assert one.shape == bundle.value.shape
+        assert (np.abs(one) >= FAR).all()
 
 
 def test_fast_tensions_are_averaged_and_say_over_how_long(run: Run) -> None:
