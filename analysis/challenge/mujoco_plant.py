@@ -50,8 +50,9 @@ Runs were made by an independent plant: MuJoCo moves the platform, and cables, f
 drive, cells and camera follow laws of its own, most of which the fitting library does not hold
 (ideal sliders for hysteresis, catenaries for sag, ladders of dashpots for structural loss, several
 vibration modes in two planes). Friction is a bristle in both, and a hook with play a damped slider,
-written and integrated apart: there the library's form is the plant's. Every true machine is off its
-rig file by what the file's sigmas allow. Diagnosis saw the runs alone; the truth was sealed before.
+written and integrated apart: there the library's form is the plant's, and since decision 0062
+nearly in relaxation (both two branches, of other shares). Every true machine is off its rig file by
+what the file's sigmas allow. Diagnosis saw the runs alone; the truth was sealed before.
 """
 
 

@@ -108,6 +108,19 @@ class Likely(Open):
     probability: float = Field(ge=0.0, le=1.0)
 
 
+class Limit(Open):
+    """From which size on a number of an effect would not have gone unnoticed."""
+
+    effect: str
+    parameter: str
+    unit: str
+    everywhere: float | None = Field(
+        description="in all cables alike, or where it has no choice; null: at no plausible size"
+    )
+    placed: bool = Field(description="whether it may be in some cables only")
+    in_one_cable: float | None = Field(description="in any one cable; null as above")
+
+
 class Amount(Open):
     """A term of a cable's measured state with its coefficient, in SI units."""
 
@@ -142,6 +155,9 @@ class Statement(Open):
     causes: list[Cause]
     not_ruled_out: list[Likely] = Field(
         default=[], description="where the verdict is none: effects likelier than a tenth"
+    )
+    limits: list[Limit] = Field(
+        default=[], description="where the verdict is none: what would not have gone unnoticed"
     )
     remains: Remains
     fit: Fit

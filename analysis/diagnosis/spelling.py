@@ -41,6 +41,12 @@ def scaled(name: str, value: float, unit: str) -> tuple[float, str]:
     return _UNITS.get(unit, (1.0, unit))
 
 
+def size_of(name: str, value: float, unit: str) -> str:
+    """A size to two digits, such as "0.21 N"; parameters as for `scaled`."""
+    factor, spelled = scaled(name, value, unit)
+    return f"{factor * value:.2g} {spelled}".strip()
+
+
 def number(name: str, value: float, sigma: float, unit: str) -> str:
     """A value with its uncertainty, such as "0.21 ± 0.02 N".
 

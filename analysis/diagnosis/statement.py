@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from math import hypot
+from math import hypot, isfinite
 from typing import Any
 
 from analysis.diagnosis.candidates import PAIRS
@@ -56,6 +56,7 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
         "verdict": diagnosis.verdict or "not asked",
         "causes": causes,
         "not_ruled_out": likely,
+        "limits": _limits(diagnosis) if diagnosis.verdict == "none" else [],
         "remains": {
             "significant": bool(remains and remains.significant),
             "where": where(remains.findings) if remains and remains.significant else None,
@@ -94,6 +95,21 @@ def not_ruled_out(
     likely = sorted(found.items(), key=lambda one: -one[1])
     return [{"effect": name, "probability": share} for name, share in likely
             if share > NOT_RULED_OUT]  # fmt: skip
+
+
+def _limits(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """From which size on each effect would not have gone unnoticed; null: at no plausible one."""
+    return [
+        {
+            "effect": one.candidate,
+            "parameter": one.parameter,
+            "unit": one.unit,
+            "everywhere": one.everywhere if isfinite(one.everywhere) else None,
+            "placed": one.in_one is not None,
+            "in_one_cable": one.in_one if one.in_one is not None and isfinite(one.in_one) else None,
+        }
+        for one in (() if diagnosis.search is None else diagnosis.search.limits)
+    ]
 
 
 def cables_of(cause: Cause) -> list[int]:

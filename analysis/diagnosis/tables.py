@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from analysis.diagnosis.proposing import spelled
-from analysis.diagnosis.spelling import listed, number, percent, scaled
+from analysis.diagnosis.spelling import listed, number, percent, scaled, size_of
 from analysis.diagnosis.titles import parameter_name, rival, short, title, together
 
 if TYPE_CHECKING:
@@ -258,6 +258,23 @@ def amount(one: Statement) -> str:
     return f"{factor * one['moved']:+.3g} {unit}".strip()
 
 
+def unnoticed(said: Statement) -> Rows:
+    """From which size on each effect would have been noticed, where nothing is named."""
+    rows = []
+    for one in said["limits"]:
+        sizes = [one["everywhere"], *([one["in_one_cable"]] if one["placed"] else [])]
+        texts = [
+            "-" if size is None else size_of(one["parameter"], size, one["unit"]) for size in sizes
+        ]
+        rows.append((title(one["effect"]), one["parameter"], *texts, *[""] * (2 - len(texts))))
+    return Rows(
+        "what would not have gone unnoticed, if only as another law of its kind",
+        ("effect", "parameter", "from (all cables alike)", "from (in any one cable)"),
+        (False, False, True, True),
+        tuple(rows),
+    )
+
+
 def channel_name(name: str) -> str:
     """A channel without its unit: "pitch", "tension 3"."""
     for ending in ("_deg", "_m"):
@@ -269,7 +286,7 @@ def markdown(said: Statement, sections: Sequence[tuple[str, str]], name: str) ->
     """The whole page: words and tables."""
     parts = [f"# Diagnosis of {name}\n"]
     parts += [f"## {heading}\n\n{text}\n" for heading, text in sections]
-    shown = tables(said)
+    shown = [*tables(said), *([unnoticed(said)] if said.get("limits") else [])]
     if shown:
         parts.append("## Numbers\n")
         parts += [one.markdown() for one in shown]

@@ -50,6 +50,7 @@ class Found(NamedTuple):
     Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
     which share of the time anything can be foretold, and a cause that foretells some of it. How
     much better than stated loosely known parameters are known, and from where to begin anew so.
+    Where parameters alone came to the noise, everything about there.
     """
 
     screened: Sequence[Scored]
@@ -60,6 +61,7 @@ class Found(NamedTuple):
     foretold: float = 1.0
     foretells: Followed | None = None
     sharper: "tuple[Told, Start] | None" = None
+    alone: Faint | None = None
 
 
 class Led(NamedTuple):
@@ -159,7 +161,7 @@ def by_ring(
             screened, faintly = faint_search(about, refiner, refiner.candidates)
         sharper = _sharper(refiner, about) if enough is None else None
         if sharper is not None or not _promising(faintly):
-            return Found(screened, faintly, faint=True, sharper=sharper)
+            return Found(screened, faintly, faint=True, sharper=sharper, alone=about)
         single = [Guess.of(one) for one in faintly if len(one.hypothesis.parts) == 1]
         single += whole_guesses(system, refiner.candidates, about)
         single.sort(key=lambda one: -one.log_score)
@@ -183,7 +185,8 @@ def by_ring(
     poor = led.is_poor and enough is None
     if near or (led.arrived and not poor):
         rung = led.fitted()
-        return Found(screened, faintly if rung is None else _beside(rung, faintly), faint=True)
+        fitted = faintly if rung is None else _beside(rung, faintly)
+        return Found(screened, fitted, faint=True, alone=about if near else None)
     foretold = 1.0 if led.arrived else _foretold(nothing)
     return Found((), (), faint=False, led=Led(led, single), foretold=foretold)
 

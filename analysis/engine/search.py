@@ -10,6 +10,7 @@ from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
+from analysis.engine.limits import Limit, limits_of
 from analysis.engine.look import look
 from analysis.engine.moved import moved_far, released
 from analysis.engine.opening import from_opening, opening_of
@@ -52,6 +53,9 @@ class Search:
         Recordings that count for nothing there: what is on could not be led through them.
     moved
         Candidates whose numbers nothing left out has moved too far, and by how many sigmas.
+    limits
+        From which size on causes would have been told; none: parameters alone did not come to the
+        noise of every sample.
     """
 
     system: System
@@ -65,6 +69,7 @@ class Search:
     faint: bool = False
     aside: tuple[str, ...] = ()
     moved: Mapping[str, float] = field(default_factory=dict)
+    limits: tuple[Limit, ...] = ()
 
     @property
     def lost(self) -> bool:
@@ -134,9 +139,10 @@ def search(
     named = {one.hypothesis.names for one in found.fitted}
     more = [released(refiner, alone, name) for name in moved if (name,) not in named]
     fitted = (*found.fitted, *more)
+    limits = () if found.alone is None else limits_of(found.alone, refiner.candidates)
     return Search(
         system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
-        faint=found.faint, aside=found.aside, moved=moved,
+        faint=found.faint, aside=found.aside, moved=moved, limits=limits,
     )  # fmt: skip
 
 

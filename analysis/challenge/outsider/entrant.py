@@ -42,9 +42,10 @@ and the run folder's page alone by somebody who had read none of the models: qua
 Newton-Euler by Runge-Kutta at 50 us, strings with up to three modes in two planes, LuGre bristles,
 Bouc-Wen loops or Iwan sliders for hysteresis, Maxwell ladders, an exponential law of stiffening, a
 reversible clearance, posts for a frame, cells, camera and rigs of its own. Friction is a bristle
-here and in the fitting library, written and integrated apart, and the library's ladder of branches
-can be this one's since decision 0054. Every true machine is off its rig file by what the file's
-sigmas allow, in balance at rest. Diagnosis saw the runs alone; the truth was sealed before.
+here and in the fitting library, written and integrated apart; the library's ladder of branches can
+be this one's since decision 0054, and its relaxation nearly (both two branches, of other shares)
+since 0062. Every true machine is off its rig file by what the file's sigmas allow, in balance at
+rest. Diagnosis saw the runs alone; the truth was sealed before.
 """
 
 

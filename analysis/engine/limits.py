@@ -1,0 +1,107 @@
+"""How large a cause would have to be not to go unnoticed, where nothing was left out.
+
+About parameters that lead to the noise, everything is in proportion: what one unit of a term does,
+less what parameters absorb of it, tells from which size on it would be likelier than nothing. That
+something would be named then, and not that it would be this: near its limit many a law does the
+same.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.engine.faint import Faint
+from analysis.engine.hypothesis import LOG_ODDS, Part, part_log_prior
+from analysis.engine.screen import limits as bounds
+from analysis.engine.screen import magnitude
+from analysis.engine.system import Array, Candidate
+from analysis.engine.weights import EXACT, TEMPER, TEMPER_EXACT
+
+
+@dataclass(frozen=True)
+class Limit:
+    """From which size on a number of a candidate would not go unnoticed.
+
+    Attributes
+    ----------
+    candidate, parameter, unit
+        What it is.
+    everywhere
+        In all places alike, or where there is no choice of places. Infinity: at no plausible size.
+    in_one
+        In any one place; None: there is no choice.
+    """
+
+    candidate: str
+    parameter: str
+    unit: str
+    everywhere: float
+    in_one: float | None = None
+
+
+def limits_of(found: Faint, candidates: Mapping[str, Candidate]) -> tuple[Limit, ...]:
+    """Limits of all candidates that are not there or not as a whole, in their order.
+
+    Parameters
+    ----------
+    found
+        Everything about where parameters alone came to the noise.
+    candidates
+        By name.
+    """
+    told = []
+    for candidate in candidates.values():
+        if candidate.fixed or (candidate.name, 0) not in found.terms:
+            continue
+        names = [one.name for one in candidate.terms]
+        for group in candidate.groups(names, True):
+            first = next(one for one in candidate.terms if one.name == group[0])
+            placed = len(group) > 1 and not candidate.together
+            told.append(
+                Limit(
+                    candidate.name,
+                    first.parameter,
+                    first.unit,
+                    _size(found, candidate, group),
+                    max(_size(found, candidate, (one,)) for one in group) if placed else None,
+                )
+            )
+    return tuple(told)
+
+
+def _size(found: Faint, candidate: Candidate, group: tuple[str, ...]) -> float:
+    """From which size on terms of one value would be noticed, whatever their shapes."""
+    cost = -part_log_prior(candidate, Part(group, len(group) > 1))
+    temper = TEMPER_EXACT if candidate.form_share < EXACT else TEMPER
+    sigmas = float(np.sqrt(2.0 * (cost - LOG_ODDS * (temper - 1.0))))
+    pick = [k for k, one in enumerate(candidate.terms) if one.name in group]
+    looks = _looks(found, candidate.name, len(candidate.variants()))
+    least = float(min(_stands_out(found, columns[:, pick].sum(axis=1)) for columns in looks))
+    if not least > 0.0:
+        return np.inf
+    size = abs(magnitude(candidate, group, sigmas / least))
+    low, high = bounds(candidate, group)
+    return size if size <= max(abs(low), abs(high)) else np.inf
+
+
+def _looks(found: Faint, name: str, count: int) -> Iterator[Array]:
+    """What each variant of a candidate's shapes does; the last look at each counts.
+
+    Of what bends a little tells less than the whole of its step.
+    """
+    every: Sequence[Array] = [
+        found.terms[name, v] for v in range(2 * count) if (name, v) in found.terms
+    ]
+    yield from every[-count:]
+
+
+def _stands_out(found: Faint, does: Array) -> float:
+    """By how many sigmas a change stands out of noise and of what parameters absorb."""
+    problem = found.problem
+    root = np.sqrt(problem.base)
+    absorbs, does = problem.nuisance / root[:, None], does / root
+    inner = np.eye(absorbs.shape[1]) + absorbs.T @ absorbs
+    across = absorbs.T @ does
+    left = float(does @ does - across @ np.linalg.solve(inner, across))
+    return float(np.sqrt(max(left, 0.0)))
