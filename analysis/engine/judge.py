@@ -27,6 +27,10 @@ IMPLAUSIBLE = 4.0
 CERTAIN = 0.9
 """A cause named alone is at least this likely."""
 
+UNKNOWN = 0.05
+"""No cause is told as surer than this leaves it. Of 168 that were as sure as could be, in blind
+sets by two plants, 9 % were not there (5 to 14 %): what no hypothesis says, no score doubts."""
+
 NOISE, DOUBTFUL = 1.06, 8.0
 """The squared misfit of a sample that noise allows where it is known, and simulators; and
 how much more leaves it even whether what explains best is what is there, for one whose law has this
@@ -167,13 +171,17 @@ def judge(
         doubt = doubt_beside(chosen, null, candidates, noise)
     doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
-    causes = tuple(
-        one
-        if one.name in shown
-        else doubted(one, doubt + (1.0 - doubt) * _any_would_do(chosen, candidates[one.name]))
+    doubts = {
+        one.name: doubt + (1.0 - doubt) * _any_would_do(chosen, candidates[one.name])
         for one in sure
+        if one.name not in shown
+    }
+    verdict = "unexplained"
+    if doubt < 0.5 or shown:
+        verdict = _verdict([doubted(one, doubts.get(one.name, 0.0)) for one in sure], candidates)
+    causes = tuple(
+        doubted(one, max(doubts[one.name], UNKNOWN)) if one.name in doubts else one for one in sure
     )
-    verdict = "unexplained" if doubt >= 0.5 and not shown else _verdict(causes, candidates)
     return Judgement(
         verdict, causes, chosen, tuple(float(w) for w in weights), doubt, shown=bool(shown)
     )

@@ -12,6 +12,7 @@ from analysis.engine.judge import (
     DOUBT_A_CAUSE,
     NEGLIGIBLE,
     STANDS_OUT,
+    UNKNOWN,
     judge,
 )
 from analysis.engine.look import look
@@ -76,8 +77,7 @@ def test_a_dozen_coordinates_would_explain_anything(
 def test_recordings_in_which_it_does_not_hold_leave_doubt(refiner: Refiner) -> None:
     aside = [judge(of(refiner, 1.02), CANDIDATES, aside=one) for one in (0.0, 0.125, 0.25)]
     sure = [one.causes[0].probability for one in aside]
-    assert sure[0] - sure[1] == pytest.approx(0.0625, abs=0.01)
-    assert sure[0] - sure[2] == pytest.approx(0.125, abs=0.01)
+    assert sure == pytest.approx([1.0 - UNKNOWN, 1.0 - 0.0625, 1.0 - 0.125], abs=0.01)
 
 
 def test_the_more_the_best_leaves_the_less_it_is_believed(refiner: Refiner) -> None:
@@ -301,3 +301,8 @@ def test_what_leaves_more_than_nothing_does_is_out_whatever_evidence_forgives_it
     said = judge(found, CANDIDATES, settled=True)
     assert said.verdict == "none"
     assert said.chosen is found[1]
+
+
+def test_nothing_is_told_as_surer_than_what_was_as_sure_has_been(refiner: Refiner) -> None:
+    (cause,) = judge(of(refiner, 1.02), CANDIDATES).causes
+    assert 0.99 * (1.0 - UNKNOWN) < cause.probability <= 1.0 - UNKNOWN
