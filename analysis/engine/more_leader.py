@@ -9,7 +9,6 @@ from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
     farthest_first,
-    noise_of,
     rise_beside_form,
 )
 from analysis.engine.faint import Faint
@@ -54,10 +53,6 @@ class MoreLeader(RivalLeader):
 
     def _kinds(self, names: Sequence[str]) -> set[str]:
         return {self._refiner.candidates[name].kind for name in names}
-
-    def _explains(self, led: Followed) -> bool:
-        """Whether what is on explains to the noise."""
-        return led.state is not None and led.to_end and led.left < noise_of(self._system)
 
     def _one_more(self, beside: Followed | None = None) -> bool:
         """Try one cause more beside the best, or beside another; whether that leads farther."""

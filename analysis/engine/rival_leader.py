@@ -59,12 +59,18 @@ class RivalLeader(Leader):
         if best.borrowed:
             self._led = [through(self._system, one) if one is best else one for one in self._led]
 
+    def _explains(self, led: Followed) -> bool:
+        """Whether what is on explains to the noise."""
+        return led.state is not None and led.to_end and led.left < noise_of(self._system)
+
     def _lead_kin(self, best: Followed) -> None:
         """From where a hypothesis was led to the end, other laws of each of its kinds are led."""
         if best.state is None or not best.to_end:
             return
         for known, name, names in kin_left(best, self._in_place, self._refiner.candidates):
-            if names in self._tried or self._effort > self._most:
+            # However much was tried: beside what explains to the noise kin may explain as well.
+            spent = self._effort > self._most and not self._explains(best)
+            if names in self._tried or spent:
                 continue
             self._tried.add(names)
             found = lead_instead(self._samples, best, known, name)
