@@ -6,11 +6,12 @@ something would be named then, and not that it would be this: near its limit man
 same.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.evidence import Frame
 from analysis.engine.faint import Faint
 from analysis.engine.hypothesis import LOG_ODDS, Part, part_log_prior
 from analysis.engine.screen import limits as bounds
@@ -51,10 +52,12 @@ def limits_of(found: Faint, candidates: Mapping[str, Candidate]) -> tuple[Limit,
         By name.
     """
     told = []
+    frame = Frame(found.problem, found.problem.base)
     for candidate in candidates.values():
         if candidate.fixed or (candidate.name, 0) not in found.terms:
             continue
         names = [one.name for one in candidate.terms]
+        looks = [frame.normal(one)[0] for one in _looks(found, candidate)]
         for group in candidate.groups(names, True):
             first = next(one for one in candidate.terms if one.name == group[0])
             placed = len(group) > 1 and not candidate.together
@@ -63,45 +66,35 @@ def limits_of(found: Faint, candidates: Mapping[str, Candidate]) -> tuple[Limit,
                     candidate.name,
                     first.parameter,
                     first.unit,
-                    _size(found, candidate, group),
-                    max(_size(found, candidate, (one,)) for one in group) if placed else None,
+                    _size(candidate, looks, group),
+                    max(_size(candidate, looks, (one,)) for one in group) if placed else None,
                 )
             )
     return tuple(told)
 
 
-def _size(found: Faint, candidate: Candidate, group: tuple[str, ...]) -> float:
-    """From which size on terms of one value would be noticed, whatever their shapes."""
+def _size(candidate: Candidate, looks: Sequence[Array], group: tuple[str, ...]) -> float:
+    """From which size on terms of one value would be noticed, whatever their shapes.
+
+    What one unit of each tells beside parameters, squared, in sigmas: a matrix for each look.
+    """
     cost = -part_log_prior(candidate, Part(group, len(group) > 1))
     temper = TEMPER_EXACT if candidate.form_share < EXACT else TEMPER
     sigmas = float(np.sqrt(2.0 * (cost - LOG_ODDS * (temper - 1.0))))
     pick = [k for k, one in enumerate(candidate.terms) if one.name in group]
-    looks = _looks(found, candidate.name, len(candidate.variants()))
-    least = float(min(_stands_out(found, columns[:, pick].sum(axis=1)) for columns in looks))
+    least = min(float(one[np.ix_(pick, pick)].sum()) for one in looks)
     if not least > 0.0:
         return np.inf
-    size = abs(magnitude(candidate, group, sigmas / least))
+    size = abs(magnitude(candidate, group, sigmas / float(np.sqrt(least))))
     low, high = bounds(candidate, group)
     return size if size <= max(abs(low), abs(high)) else np.inf
 
 
-def _looks(found: Faint, name: str, count: int) -> Iterator[Array]:
+def _looks(found: Faint, candidate: Candidate) -> list[Array]:
     """What each variant of a candidate's shapes does; the last look at each counts.
 
     Of what bends a little tells less than the whole of its step.
     """
-    every: Sequence[Array] = [
-        found.terms[name, v] for v in range(2 * count) if (name, v) in found.terms
-    ]
-    yield from every[-count:]
-
-
-def _stands_out(found: Faint, does: Array) -> float:
-    """By how many sigmas a change stands out of noise and of what parameters absorb."""
-    problem = found.problem
-    root = np.sqrt(problem.base)
-    absorbs, does = problem.nuisance / root[:, None], does / root
-    inner = np.eye(absorbs.shape[1]) + absorbs.T @ absorbs
-    across = absorbs.T @ does
-    left = float(does @ does - across @ np.linalg.solve(inner, across))
-    return float(np.sqrt(max(left, 0.0)))
+    count = len(candidate.variants())
+    places = [(candidate.name, v) for v in range(2 * count)]
+    return [found.terms[one] for one in places if one in found.terms][-count:]
