@@ -22,6 +22,8 @@ from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored
 from analysis.engine.sharper import Sharper, Told, how_sharp, scales_of
+from analysis.engine.stride import strides_of
+from analysis.engine.stride_search import stride_guesses
 from analysis.engine.system import Array, Candidate, System
 from analysis.engine.until import Until
 from analysis.engine.way import STRAIN
@@ -151,22 +153,24 @@ def by_ring(
         led = FollowedSearch(refiner, nothing, most_causes, following)
         return Found((), (), faint=False, led=Led(led, [], nothing))
     asked = system.candidates if near else _free(system)
-    about = faint(system, nothing, asked, following, near=start.seen)
+    strides = strides_of(system.candidates, system.nuisances) if near else ()
+    about = faint(system, nothing, asked, following, near=start.seen, strides=strides)
     if near:
         screened, faintly = faint_search(about, refiner, refiner.candidates)
         other = _out_of_hollow(system, start.nuisance, nothing, faintly)
         if other is not None:
             nothing = other
-            about = faint(system, nothing, system.candidates, following)
+            about = faint(system, nothing, system.candidates, following, strides=strides)
             screened, faintly = faint_search(about, refiner, refiner.candidates)
+        afar = stride_guesses(about, refiner.candidates, faintly)
         sharper = _sharper(refiner, about) if enough is None else None
-        if sharper is not None or not _promising(faintly):
+        if sharper is not None or not _promising(faintly, afar):
             return Found(screened, faintly, faint=True, sharper=sharper, alone=about)
         single = [Guess.of(one) for one in faintly if len(one.hypothesis.parts) == 1]
-        single += whole_guesses(system, refiner.candidates, about)
+        single += [*afar, *whole_guesses(system, refiner.candidates, about)]
         single.sort(key=lambda one: -one.log_score)
     else:
-        screened, faintly = one_more(about, refiner), []
+        screened, faintly, afar = one_more(about, refiner), [], []
         single = [guessed(about, refiner, one) for one in screened]
         single = [*whole_onward(system, refiner.candidates, nothing), *single]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
@@ -185,7 +189,7 @@ def by_ring(
     poor = led.is_poor and enough is None
     if near or (led.arrived and not poor):
         rung = led.fitted()
-        fitted = faintly if rung is None else _beside(rung, faintly)
+        fitted = faintly if rung is None else _beside(rung, faintly, afar)
         return Found(screened, fitted, faint=True, alone=about if near else None)
     foretold = 1.0 if led.arrived else _foretold(nothing)
     return Found((), (), faint=False, led=Led(led, single), foretold=foretold)
@@ -300,10 +304,13 @@ def _abreast(single: Sequence[Guess]) -> list[Guess]:
     return [one for one in single if one.log_score > least][:MOST_ABREAST]
 
 
-def _beside(rung: Sequence[Fitted], faintly: Sequence[Fitted]) -> list[Fitted]:
+def _beside(
+    rung: Sequence[Fitted], faintly: Sequence[Fitted], afar: Sequence[Guess]
+) -> list[Fitted]:
     """What was led to the ring's phase, and single causes that were not, as far behind as told."""
     led = {one.hypothesis.names: one.log_score for one in rung}
     told = {one.hypothesis.names: one.log_score for one in faintly}
+    told |= {one.hypothesis.names: one.log_score for one in afar}
     common = [names for names in told if names in led and names]
     if not common:
         return list(rung)
@@ -316,7 +323,8 @@ def _beside(rung: Sequence[Fitted], faintly: Sequence[Fitted]) -> list[Fitted]:
     return sorted([*rung, *others], key=lambda one: -one.log_score)
 
 
-def _promising(faintly: Sequence[Fitted]) -> bool:
-    """Whether anything explains, in straight lines, much more than parameters do."""
+def _promising(faintly: Sequence[Fitted], afar: Sequence[Guess]) -> bool:
+    """Whether anything explains, in straight lines or from afar, much more than parameters do."""
     nothing = next(one for one in faintly if not one.hypothesis.parts)
-    return faintly[0].log_score > nothing.log_score + WORTH_FOLLOWING
+    best = max([faintly[0].log_score, *(one.log_score for one in afar)])
+    return best > nothing.log_score + WORTH_FOLLOWING

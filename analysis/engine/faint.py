@@ -18,6 +18,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.lens import Labels
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
+from analysis.engine.stride import LOST, SEEN, Stride
 from analysis.engine.system import Array, Candidate, Point, Setting, System
 from analysis.engine.variance import SPREAD
 from analysis.engine.whiten import noise_leaves
@@ -83,6 +84,8 @@ class Faint:
         Nuisances of directions, shape (nuisances, p).
     seen
         Of candidates that are not on, for what is near.
+    strides
+        What causes do there as they usually are, shape (f,), as far as it was asked for.
     """
 
     followed: Followed
@@ -91,6 +94,7 @@ class Faint:
     own: Mapping[str, Array]
     rotation: Array
     seen: _Seen
+    strides: tuple[tuple[Stride, Array], ...] = ()
 
     def to_lead_from(self) -> "Faint":
         """Without what is kept of all samples for what is near, which may be much."""
@@ -103,6 +107,7 @@ def faint(
     candidates: Sequence[Candidate],
     progress: Progress | None = None,
     near: Faint | None = None,
+    strides: Sequence[Stride] = (),
 ) -> Faint:
     """What could still be there, as far as the ring was followed.
 
@@ -119,6 +124,9 @@ def faint(
     near
         The same about other numbers: where those come to the same, what candidates do beside them
         is not simulated again.
+    strides
+        Which causes to simulate there as they usually are, where straight lines do not say that
+        there is nothing to see, or too much.
     """
     followed = followed.about or followed
     samples = Samples(system, everything=True, share=followed.telling)
@@ -146,6 +154,11 @@ def faint(
     old = [place for place in asked if place in kept]
     if old:
         changes, places = np.concatenate([changes, [kept[one] for one in old]]), places + old
+    does_of = dict(zip(places, changes[numbers:], strict=True))
+    strides = _worth_asking(strides, changes[:count], does_of)
+    points = [one.point(followed.nuisance) for one in strides]
+    whole = [here - one for one in samples.residuals(points)]
+    changes = np.concatenate([changes, np.array(whole).reshape(-1, len(here))])
     # A simulation that came to nothing tells nothing.
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     allowed = noise_leaves(system.bundles)
@@ -174,7 +187,8 @@ def faint(
         seen = near.seen
     elif changes.size > KEPT:
         seen = replace(seen, changes={})
-    return Faint(followed, problem, terms, on, rotation, seen)
+    walked = tuple(zip(strides, inside[:, len(changes) - len(strides) :].T, strict=True))
+    return Faint(followed, problem, terms, on, rotation, seen, walked)
 
 
 def _asked(
@@ -192,6 +206,25 @@ def _asked(
                     effects = {**at.effects, candidate.name: setting}
                     point = Point(at.nuisance, effects, "as_is")
                     found[candidate.name, v, k] = point, small * term.step
+    return found
+
+
+def _worth_asking(
+    strides: Sequence[Stride], nuisances: Array, does: Mapping[Place, Array]
+) -> list[Stride]:
+    """Those of which straight lines say that something is to be seen, and not too much."""
+    if not strides:
+        return []
+    inside = np.eye(len(nuisances)) + nuisances @ nuisances.T
+    found = []
+    for one in strides:
+        change = np.zeros(nuisances.shape[1])
+        for k, term in enumerate(one.candidate.terms):
+            change += one.size * term.step * does[one.candidate.name, 0, k]
+        back = nuisances @ change
+        seen = float(change @ change - back @ np.linalg.solve(inside, back))
+        if SEEN < seen < LOST:
+            found.append(one)
     return found
 
 

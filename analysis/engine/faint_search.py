@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.evidence import Weighed
 from analysis.engine.faint import Faint
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
@@ -189,7 +190,12 @@ def _simpler(screen: Screen, scored: Scored, nothing: float) -> list[Scored]:
 
 def nuisances_of(found: Faint, scored: Scored) -> Array:
     """Where the nuisances would be, in sigmas."""
-    moved = found.rotation @ (scored.weighed.nuisance - found.problem.at)
+    return nuisances_by(found, scored.weighed)
+
+
+def nuisances_by(found: Faint, weighed: Weighed) -> Array:
+    """The same, by the evidence."""
+    moved = found.rotation @ (weighed.nuisance - found.problem.at)
     return np.asarray(found.followed.nuisance + moved)
 
 

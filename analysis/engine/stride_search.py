@@ -1,0 +1,54 @@
+"""Which causes explain more as they usually are than straight lines about the ring promise."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from analysis.engine.evidence import weigh
+from analysis.engine.faint import Faint
+from analysis.engine.faint_search import nuisances_by
+from analysis.engine.fitted import Fitted
+from analysis.engine.guess import Guess
+from analysis.engine.screen import LOOSE_FORM
+from analysis.engine.system import Candidate
+
+LEAST, MOST = 0.5, 2.0
+"""So many times as much of it may be told from there."""
+
+MORE = 8.0
+"""By so much more than by straight lines, as a logarithm, it must be likely."""
+
+
+def stride_guesses(
+    found: Faint, candidates: Mapping[str, Candidate], faintly: Sequence[Fitted]
+) -> list[Guess]:
+    """Causes that are likelier as they usually are than straight lines say, the best first.
+
+    Parameters
+    ----------
+    found
+        Everything about where parameters alone came, what strides do there among it.
+    candidates
+        By name.
+    faintly
+        What straight lines say.
+    """
+    told = {one.hypothesis.names: one.log_score for one in faintly}
+    guesses: dict[str, Guess] = {}
+    for stride, does in found.strides:
+        name = stride.candidate.name
+        weighed = weigh(
+            found.problem,
+            {name: does[:, None]},
+            {name: np.zeros(len(does))},
+            {name: stride.candidate.form_share * LOOSE_FORM},
+            np.array([LEAST]),
+            np.array([MOST]),
+            rounds=2,
+        )
+        state = stride.state(float(weighed.estimate[0]), candidates)
+        score = weighed.log_evidence + state.hypothesis.log_prior(candidates)
+        before = guesses[name].log_score if name in guesses else told.get((name,), told[()]) + MORE
+        if score > before:
+            guesses[name] = Guess(state, nuisances_by(found, weighed), score)
+    return sorted(guesses.values(), key=lambda one: -one.log_score)
