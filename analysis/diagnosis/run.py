@@ -14,6 +14,7 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
 from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
 from analysis.engine.finder import Tell
+from analysis.engine.louder import Louder
 from analysis.engine.sharper import Sharper
 from analysis.engine.until import Until
 from cdpr8.errors import RigFileError
@@ -89,7 +90,7 @@ def diagnose_recordings(
     with one_thread_each():
         machine = RecordedMachine(recordings, effects, workers)
         diagnosis = diagnose(machine, stop_after=stop_after, tell=tell)
-    if isinstance(diagnosis.system, Until):
+    if isinstance(diagnosis.system, (Until, Louder)):
         machine = machine.looked_at_in(diagnosis.system.bundles)
     if isinstance(diagnosis.system, Sharper):
         machine = machine.known_as(diagnosis.system.nuisances)

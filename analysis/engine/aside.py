@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from analysis.engine.by_ring import Found, Start, by_ring
+from analysis.engine.by_ring import by_ring
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.found import Found, Start
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.engine.by_ring import Found, Led
 from analysis.engine.finder import Finder, Tell
 from analysis.engine.fitted import Fitted
+from analysis.engine.found import Found, Led
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.more_leader import FAR_BEHIND

@@ -1,6 +1,6 @@
 """The whole of it: calibrate, locate, search, judge, confirm."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -15,11 +15,12 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
+from analysis.engine.louder import Louder
 from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
 from analysis.engine.search import REMAINS_ALONE, Search, search
 from analysis.engine.sharper import Sharper
-from analysis.engine.system import Array, System
+from analysis.engine.system import Array, Nuisance, System
 from analysis.engine.until import Until
 from cdpr8.errors import UsageError
 
@@ -45,9 +46,19 @@ SHARPER = (
     "{unit}, but fit best where they are off by no more than {told:.2g} {unit}"
 )
 
+LOUDER = (
+    "the noise of samples is {least:.2f} to {most:.2f} times what is stated: what is left is as "
+    "rough as that from one sample to the next, as no physics is, and it is counted as noise"
+)
+
 MOVED = (
     "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it: a number that is off "
     "is named where it is a candidate's, which `Nuisance.cause` and `term` say"
+)
+
+BESIDE = (
+    "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it beside what is named: "
+    "{cause} may be there as well, and these data do not make it sure"
 )
 
 
@@ -77,8 +88,9 @@ class Diagnosis:
     Attributes
     ----------
     system
-        What was diagnosed; an `Until`, where nothing foretells what came after some time, and a
-        `Sharper`, where the recording told how well parameters are known.
+        What was diagnosed; an `Until`, where nothing foretells what came after some time, a
+        `Sharper`, where the recording told how well parameters are known, and a `Louder`, where it
+        told what its noise is.
     calibrated
         The system at its likeliest parameters, nothing left out.
     findings
@@ -110,12 +122,7 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """The word "none", "parameter", "explained", "ambiguous" or "unexplained"."""
-        if self.judgement is None:
-            return ""
-        poor = self.remains is not None and self.remains.significant
-        if poor and self.judgement.verdict == "none":
-            return "unexplained"
-        return self.judgement.verdict
+        return "" if self.judgement is None else self.judgement.verdict
 
 
 def diagnose(
@@ -160,6 +167,8 @@ def diagnose(
     system, problem = searched.system, searched.calibrated.problem
     if isinstance(system, Until):
         notes = (*notes, FORETOLD.format(until_s=system.end_s))
+    if isinstance(system, Louder):
+        notes = (*notes, LOUDER.format(**system.words()))
     if isinstance(system, Sharper):
         notes = (*notes, SHARPER.format(**system.words()))
     findings = locate(system.bundles, problem, searched.null.problem.residual)
@@ -170,8 +179,15 @@ def diagnose(
         searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside,
         settled=not rings(system), moved=searched.moved,
     )  # fmt: skip
-    notes = (*notes, *_moved(system, judgement))
+    far = [] if rings(system) else _moved_far(system, judgement)
+    for one, sigmas in far:
+        words = MOVED if one.cause is None else BESIDE
+        notes = (*notes, words.format(name=one.name, sigmas=sigmas, cause=one.cause))
+    if any(one.cause is not None for one, _ in far) and judgement.verdict != "unexplained":
+        judgement = replace(judgement, verdict="ambiguous")
     remains = _remains(searched, judgement, noise)
+    if remains.significant and judgement.verdict == "none":
+        judgement = replace(judgement, verdict="unexplained")
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
     return Diagnosis(
@@ -179,13 +195,15 @@ def diagnose(
     )
 
 
-def _moved(system: System, judgement: Judgement) -> list[str]:
-    """Parameters that no candidate can be named for, and that moved too far."""
-    if rings(system):
-        return []
+def _moved_far(system: System, judgement: Judgement) -> list[tuple[Nuisance, float]]:
+    """Parameters that moved too far, and by how many sigmas: no candidate's, or beside others."""
+    named = {one.name for one in judgement.causes}
     at = judgement.chosen.point.nuisance
-    far = [(one, x) for one, x in zip(system.nuisances, at, strict=True) if abs(x) > EVEN]
-    return [MOVED.format(name=one.name, sigmas=x) for one, x in far if one.cause is None]
+    return [
+        (one, float(sigmas))
+        for one, sigmas in zip(system.nuisances, at, strict=True)
+        if abs(sigmas) > EVEN and (one.cause is None or (named and one.cause not in named))
+    ]
 
 
 def _remains(searched: Search, judgement: Judgement, noise: float) -> Remains:

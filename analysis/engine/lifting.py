@@ -7,12 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from analysis.engine.aside import but_for
-from analysis.engine.by_ring import Found, Start, by_ring
+from analysis.engine.by_ring import by_ring
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.found import Found, Start
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner

@@ -6,9 +6,9 @@ long they are. So most of them are of no more of a recording than it takes to te
 
 from collections.abc import Sequence
 
-from analysis.engine.by_ring import Start
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.found import Start
 from analysis.engine.lifting import LIFTED, MOST_LIFTED
 from analysis.engine.part import has_several, rings
 from analysis.engine.ring_fit import FAINT

@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from analysis.engine.by_lines import by_lines
-from analysis.engine.by_ring import Found, Start, by_ring
+from analysis.engine.by_ring import by_ring
 from analysis.engine.chain import Chained, chained, left_in
 from analysis.engine.cycles import valley
 from analysis.engine.finder import Tell
 from analysis.engine.followed import Followed
+from analysis.engine.found import Found, Start
 from analysis.engine.lifting import Lifting
 from analysis.engine.look import look
 from analysis.engine.part import Part, records_of

@@ -5,13 +5,15 @@ from dataclasses import dataclass, field, replace
 
 from analysis.engine.all_samples import noise_of
 from analysis.engine.by_lines import by_lines
-from analysis.engine.by_ring import Found, Start, by_ring
+from analysis.engine.by_ring import by_ring
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
+from analysis.engine.found import Found, Start
 from analysis.engine.lens import Lens
 from analysis.engine.limits import Limit, limits_of
 from analysis.engine.look import look
+from analysis.engine.louder import Louder, louder_than_stated
 from analysis.engine.moved import moved_far, released
 from analysis.engine.opening import from_opening, opening_of
 from analysis.engine.part import has_several, rings
@@ -20,7 +22,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
 from analysis.engine.settled import settled
 from analysis.engine.sharper import Sharper, Told
-from analysis.engine.system import Array, System
+from analysis.engine.system import Array, Point, System
 from analysis.engine.until import Until
 
 REMAINS_ALONE = 0.1
@@ -102,6 +104,9 @@ def search(
         From where what rings is led; None: from the likeliest parameters.
     """
     lens, data, calibrated = look(system, tell)
+    louder = None if rings(system) else _louder(system, calibrated)
+    if louder is not None:
+        return search(louder, tell, anew=anew, most_causes=most_causes)
     refiner = Refiner(system, lens, data, calibrated, anew=anew)
     null = refiner.nothing()
 
@@ -115,9 +120,9 @@ def search(
             found = by_pilot(refiner, most_causes, tell, start)
         else:
             found = by_ring(refiner, most_causes, tell, start)
-    if found.sharper is not None:
-        told, start = found.sharper
-        return search(Sharper(system, told), tell, anew=anew, most_causes=most_causes, start=start)
+    if found.again is not None:
+        other, start = found.again
+        return search(other, tell, anew=anew, most_causes=most_causes, start=start)
     if not found.fitted and found.foretold < 1.0 and not isinstance(system, Until):
         return search(Until(system, found.foretold), tell, anew=anew, most_causes=most_causes)
     if not found.fitted:
@@ -157,6 +162,12 @@ def _from_opening(refiner: Refiner, opening: Until, most_causes: int, tell: Tell
         return Found((), (), faint=False)
     found = by_ring(refiner, most_causes, tell, start)
     return found._replace(screened=found.screened or told.screened)
+
+
+def _louder(system: System, calibrated: Calibrated) -> Louder | None:
+    """The system with the noise that its samples have; None: as it is."""
+    told = isinstance(system, Louder)
+    return None if told else louder_than_stated(system, Point(calibrated.at))
 
 
 def _as_stated(fitted: Sequence[Fitted], told: Told) -> list[Fitted]:

@@ -380,3 +380,8 @@ class Ringing(Protocol):
 def tones_of(system: System, point: Point) -> Array:
     """Tones of a system, whether or not it says them, as `Ringing.tones_hz` has them."""
     return system.tones_hz(point) if isinstance(system, Ringing) else np.zeros(0)
+
+
+def free_of(system: System) -> list[Candidate]:
+    """Candidates of a system whose magnitude is free."""
+    return [one for one in system.candidates if not one.fixed]

@@ -72,15 +72,12 @@ def weights_of(
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
     least = TEMPER_EXACT if form < EXACT else TEMPER
     temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
-    if settled:
-        temper = min(temper, MOST_AT_NOISE * max(best.left, 1.0))
-        if best.left < noise:
-            scores = _strained(scores, fitted, temper, TEMPER)
-    elif np.isfinite(best.left):
+    if np.isfinite(best.left):
         times = max((best.left - 1.0) / (noise - 1.0), 1.0)
         temper = min(temper, MOST_AT_NOISE * times**2)
         if times == 1.0:
-            scores = _strained(scores, fitted, temper, MOST_OF_STRAIN)
+            most_of_strain = TEMPER if settled else MOST_OF_STRAIN
+            scores = _strained(scores, fitted, temper, most_of_strain)
     scores = _among_kin(scores, fitted, candidates, temper)
     # However little scores count, one cause more is no likelier beforehand.
     causes_on = np.array([len(one.hypothesis.parts) for one in fitted])

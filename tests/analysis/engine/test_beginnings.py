@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from analysis.engine.beginnings import TOLD, begun_otherwise
-from analysis.engine.by_ring import Start, _nothing
+from analysis.engine.by_ring import _nothing
+from analysis.engine.found import Start
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.system import Array, Nuisance, Point
 from tests.analysis.engine.test_ring_fit import T_S, TONE_HZ, LetGo, ring

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from analysis.engine import by_lines
-from analysis.engine.by_ring import Led, _abreast, _is_hollow, _leads_bent
+from analysis.engine.by_ring import _abreast, _leads_bent
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.found import Led
 from analysis.engine.look import look
+from analysis.engine.near_noise import _is_hollow
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.system import Candidate, Nuisance, Term

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from analysis.engine import kin, lifting, pilot
-from analysis.engine.by_ring import Found, Led, Start, by_ring
+from analysis.engine.by_ring import by_ring
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
 from analysis.engine.diagnosis import diagnose
 from analysis.engine.finder import Tell
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.found import Found, Led, Start
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.hypothesis import Part as OfHypothesis
 from analysis.engine.kin import lead_from

@@ -1,0 +1,80 @@
+"""What the ring has told so far, and from where it is asked."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from analysis.engine.faint import Faint, faint
+from analysis.engine.faint_search import guessed, one_more
+from analysis.engine.fitted import Fitted
+from analysis.engine.followed import Followed, Lent
+from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.guess import Guess
+from analysis.engine.refine import Refiner
+from analysis.engine.screen import Scored
+from analysis.engine.system import Array, System, free_of
+
+
+class Found(NamedTuple):
+    """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
+
+    Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
+    which share of the time anything can be foretold, and a cause that foretells some of it. How
+    much better than stated loosely known parameters are known, and from where to begin anew so.
+    Where parameters alone came to the noise, everything about there.
+    """
+
+    screened: Sequence[Scored]
+    fitted: Sequence[Fitted]
+    faint: bool
+    led: "Led | None" = None
+    aside: tuple[str, ...] = ()
+    foretold: float = 1.0
+    foretells: Followed | None = None
+    again: "tuple[System, Start] | None" = None
+    alone: Faint | None = None
+
+
+class Led(NamedTuple):
+    """What was led to the ring's phase so far, and what the ring promised alone.
+
+    Where parameters alone foretell nothing that moves, it was not asked: where they have come.
+    """
+
+    search: FollowedSearch
+    single: Sequence[Guess]
+    still: Followed | None = None
+
+    def promised(self, refiner: Refiner) -> Sequence[Guess]:
+        """What the ring promises, from the moment on at which something moves if need be."""
+        if self.still is None:
+            return self.single
+        about = faint(refiner.system, self.still, free_of(refiner.system))
+        return [guessed(about, refiner, one) for one in one_more(about, refiner)]
+
+
+class Start(NamedTuple):
+    """Where some of the recordings have led to, from where all of them are.
+
+    Attributes
+    ----------
+    nuisance
+        Of parameters alone, in sigmas.
+    hypotheses
+        What was found there, the best first, with nuisances of the whole system. None: parameters
+        alone came to the noise.
+    near
+        Whether parameters alone ring in phase there.
+    lent
+        What nuisances do to all samples about there; None: not known.
+    seen
+        What candidates do about a place that may be near; None: not known.
+    stuck
+        See `FollowedSearch.follow_from`.
+    """
+
+    nuisance: Array
+    hypotheses: Sequence[Followed] = ()
+    near: bool = False
+    lent: Lent | None = None
+    seen: Faint | None = None
+    stuck: bool = False
