@@ -235,3 +235,40 @@ def test_of_what_comes_as_far_the_fewest_causes_are_asked() -> None:
     both, one, far = led(100.0, "bent", "true"), led(120.0, "true"), led(500.0, "bent")
     assert plainest([both, one, far], 130.0, known) is one
     assert plainest([both, led(120.0, "which")], 130.0, known) is None, "nothing to exchange"
+
+
+def two(name: str) -> Candidate:
+    """Acts at two places, of its own size at each."""
+    terms = tuple(Term(f"size@{k}", "size", "V", k, -9.0, 9.0, 1.0) for k in "ab")
+    return Candidate(name, name, "cell", terms, form_share=0.01)
+
+
+class _AtTwo(_Straight):
+    """Two causes that do the same at two places; a parameter does what each does at the second."""
+
+    def _seen(self, point: Point) -> Array:
+        seen = 0.05 * point.nuisance[0] * ELSE
+        for setting in point.effects.values():
+            seen = seen + setting.values.get("size@a", 0.0) * THERE
+            seen = seen + setting.values.get("size@b", 0.0) * ELSE
+        return np.asarray(seen)
+
+
+def test_a_rival_in_few_places_that_bends_parameters_is_led_in_all_of_the_causes_places() -> None:
+    system = _AtTwo(two("law"), two("rival"))
+    (bundle,) = system.bundles
+    system.bundles = (replace(bundle, value=bundle.value + ELSE[:, None]),)
+    known = {one.name: one for one in system.candidates}
+    both = Hypothesis({"law": Part(("size@a", "size@b"))})
+    law = State.at(both, {("law", "size@a"): 1.0, ("law", "size@b"): 1.0}, known)
+    end = follow_ring(system, np.zeros(1), law, everything=True)
+    found = faint(system, end, [known["rival"]])
+    few = Hypothesis({"rival": Part(("size@a",))})
+    (promised,) = exchanged(found, known)
+    at_one = replace(promised.scored, hypothesis=few, values={("rival", "size@a"): 1.0})
+    (led,) = rivals(system, found, known, [Exchange(promised.ahead, at_one)])
+    assert led.state is not None
+    assert led.state.term_values() == pytest.approx(
+        {("rival", "size@a"): 1.0, ("rival", "size@b"): 1.0}, abs=0.1
+    )
+    assert cost_of(led) < cost_of(end) + 10.0
