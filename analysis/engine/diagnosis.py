@@ -15,7 +15,7 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
-from analysis.engine.louder import Louder
+from analysis.engine.louder import Louder, coloured
 from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
 from analysis.engine.search import REMAINS_ALONE, Search, search
@@ -54,6 +54,11 @@ LOUDER = (
 MOVED = (
     "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it: a number that is off "
     "is named where it is a candidate's, which `Nuisance.cause` and `term` say"
+)
+
+COLOURED = (
+    "the noise of {name!r} is not white: from one sample to the next it is {times:.2f} times what "
+    "is stated, and so there is more of it in what is slow. A slow cause may be no more than that"
 )
 
 BESIDE = (
@@ -188,6 +193,9 @@ def diagnose(
     remains = _remains(searched, judgement, noise)
     if remains.significant and judgement.verdict == "none":
         judgement = replace(judgement, verdict="unexplained")
+    if not remains.significant:
+        for name, times in coloured(system, judgement.chosen.point).items():
+            notes = (*notes, COLOURED.format(name=name, times=times))
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     flagged = implausible(searched, judgement.chosen)
     return Diagnosis(

@@ -42,6 +42,10 @@ OFTEN = 3.0
 """Variances that were taken from few samples are told anew where, together, they are off by more
 than chance, by so many standard deviations."""
 
+COLOURED, ALL = 0.5, 1.5
+"""Of what is left, white noise holds less than the first where it is coloured; of what is more than
+the second, it may be something left out."""
+
 SAME = 4.0
 """Differences of both orders tell the same to within so many standard deviations."""
 
@@ -157,3 +161,33 @@ def _roughness(bundle: Bundle, seen: Array, order: int) -> Array:
     rough = np.concatenate([np.diff(one, order, axis=0) for one in pieces])
     rough = rough[np.isfinite(rough).all(axis=1)]
     return np.mean(rough**2, axis=0) / SQUARES[order] if len(rough) else np.ones(left.shape[1])
+
+
+def coloured(system: System, point: Point) -> dict[str, float]:
+    """Channels whose noise is not white: what is left of them goes on from one sample to the next.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    point
+        With which no more than noise is left.
+
+    Returns
+    -------
+    dict
+        Channel -> sigma of the white noise that it has, over what is stated.
+    """
+    (predicted,) = system.simulate([point], list)
+    found = {}
+    for bundle, seen in zip(system.bundles, predicted, strict=True):
+        held = [one.holds(bundle.t_s) for one in bundle.segments if not one.sealed]
+        if int(np.sum(held)) < LEAST_SAMPLES:
+            continue
+        left = ((bundle.value - seen) / sigmas_of(bundle))[np.any(held, axis=0)]
+        whole = np.nanmean(left**2, axis=0)
+        rough = _roughness(bundle, seen, ORDERS[0])
+        for name, every, white in zip(bundle.names, whole, rough, strict=True):
+            if white < COLOURED * every < COLOURED * ALL:
+                found[name] = float(np.sqrt(white))
+    return found

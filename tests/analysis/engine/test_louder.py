@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.engine import diagnose
-from analysis.engine.louder import Louder, louder_than_stated
+from analysis.engine.louder import Louder, coloured, louder_than_stated
 from analysis.engine.system import Array, Point
 from tests.analysis.engine.test_ring_fit import SIGMA, T_S, LetGo, ring
 
@@ -70,3 +70,16 @@ def test_a_noise_that_is_too_small_is_nothing_left_out_and_said() -> None:
 def test_where_it_is_told_is_where_parameters_alone_have_led() -> None:
     system = LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0), noise=NOISE)
     assert diagnose(system).verdict == "none"
+
+
+def test_noise_that_goes_on_from_sample_to_sample_is_told_as_such() -> None:
+    system = _stated(1.0)
+    white = np.random.default_rng(3).normal(0.0, NOISE, len(T_S))
+    slow = np.zeros_like(white)
+    for i in range(1, len(T_S)):
+        slow[i] = 0.9 * slow[i - 1] + np.sqrt(1.0 - 0.81) * white[i]
+    (bundle,) = system.bundles
+    system.bundles = (replace(bundle, value=ring(0.0, 0.0, 0.0, 0.0) + slow[:, None]),)
+    assert coloured(system, NOTHING) == {"y": pytest.approx(0.35, abs=0.1)}
+    assert coloured(_stated(1.0), NOTHING) == {}
+    assert coloured(_stated(0.5), NOTHING) == {}, "there is less of it, and it is white"
