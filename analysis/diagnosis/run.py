@@ -14,9 +14,7 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
 from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
 from analysis.engine.finder import Tell
-from analysis.engine.louder import Louder
 from analysis.engine.sharper import Sharper
-from analysis.engine.until import Until
 from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 
@@ -90,7 +88,7 @@ def diagnose_recordings(
     with one_thread_each():
         machine = RecordedMachine(recordings, effects, workers)
         diagnosis = diagnose(machine, stop_after=stop_after, tell=tell)
-    if isinstance(diagnosis.system, (Until, Louder)):
+    if diagnosis.system.bundles is not machine.bundles:
         machine = machine.looked_at_in(diagnosis.system.bundles)
     if isinstance(diagnosis.system, Sharper):
         machine = machine.known_as(diagnosis.system.nuisances)

@@ -170,12 +170,7 @@ def diagnose(
         return Diagnosis(system, seen.calibrated, found, None, None, None, None, notes=notes)
     searched = search(system, tell, anew=anew, most_causes=most_causes)
     system, problem = searched.system, searched.calibrated.problem
-    if isinstance(system, Until):
-        notes = (*notes, FORETOLD.format(until_s=system.end_s))
-    if isinstance(system, Louder):
-        notes = (*notes, LOUDER.format(**system.words()))
-    if isinstance(system, Sharper):
-        notes = (*notes, SHARPER.format(**system.words()))
+    notes = (*notes, *_otherwise_than_stated(system))
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)
@@ -201,6 +196,20 @@ def diagnose(
     return Diagnosis(
         system, searched.calibrated, findings, searched, judgement, remains, proof, flagged, notes
     )
+
+
+def _otherwise_than_stated(system: System) -> list[str]:
+    """What was not taken as the system states it."""
+    notes = []
+    while isinstance(system, (Until, Louder, Sharper)):
+        if isinstance(system, Until):
+            notes.append(FORETOLD.format(until_s=system.end_s))
+        elif isinstance(system, Louder):
+            notes.append(LOUDER.format(**system.words()))
+        else:
+            notes.append(SHARPER.format(**system.words()))
+        system = system.stated
+    return notes
 
 
 def _moved_far(system: System, judgement: Judgement) -> list[tuple[Nuisance, float]]:

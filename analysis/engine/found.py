@@ -18,9 +18,10 @@ class Found(NamedTuple):
     """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
 
     Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
-    which share of the time anything can be foretold, and a cause that foretells some of it. How
-    much better than stated loosely known parameters are known, and from where to begin anew so.
-    Where parameters alone came to the noise, everything about there.
+    which share of the time anything can be foretold, and a cause that foretells some of it. The
+    system with the noise that its samples have, or with loosely known parameters as well known as
+    the recording tells, where that is not as stated, and from where to begin again with it. Where
+    parameters alone came to the noise, everything about there.
     """
 
     screened: Sequence[Scored]

@@ -67,7 +67,7 @@ class Louder:
     """
 
     def __init__(self, system: System, times: Sequence[Array], known_from: Sequence[int]) -> None:
-        self._system = system
+        self.stated = system
         self.name = system.name
         self.nuisances: Sequence[Nuisance] = system.nuisances
         self.candidates: Sequence[Candidate] = system.candidates
@@ -84,11 +84,11 @@ class Louder:
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""
-        return self._system.simulate(points, reduce)
+        return self.stated.simulate(points, reduce)
 
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
-        return tones_of(self._system, point)
+        return tones_of(self.stated, point)
 
 
 def louder_than_stated(system: System, point: Point) -> Louder | None:

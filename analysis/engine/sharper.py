@@ -63,7 +63,7 @@ class Sharper:
     """
 
     def __init__(self, system: System, told: Told) -> None:
-        self._system = system
+        self.stated = system
         self.told = told
         self.name = system.name
         self.bundles: Sequence[Bundle] = system.bundles
@@ -77,7 +77,7 @@ class Sharper:
 
     def words(self) -> dict[str, str | float]:
         """Which parameters, what was stated of the first, and what is told of it."""
-        loose = [one for one in self._system.nuisances if one.loose]
+        loose = [one for one in self.stated.nuisances if one.loose]
         more = f" and {len(loose) - 1} more" if len(loose) > 1 else ""
         stated = loose[0].sigma
         return {"loose": f"{loose[0].name}{more}", "unit": loose[0].unit, "most": stated,
@@ -85,11 +85,11 @@ class Sharper:
 
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""
-        return self._system.simulate([self._as_stated(one) for one in points], reduce)
+        return self.stated.simulate([self._as_stated(one) for one in points], reduce)
 
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
-        return tones_of(self._system, self._as_stated(point))
+        return tones_of(self.stated, self._as_stated(point))
 
     def _as_stated(self, point: Point) -> Point:
         return replace(point, nuisance=self.scales * point.nuisance)

@@ -29,7 +29,7 @@ class Until:
     """
 
     def __init__(self, system: System, share: float) -> None:
-        self._system = system
+        self.stated = system
         self.share = share
         self.name = system.name
         self.nuisances: Sequence[Nuisance] = system.nuisances
@@ -44,11 +44,11 @@ class Until:
     def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
         """See `System`."""
         near = [replace(one, upto=min(one.upto, self.share)) for one in points]
-        return self._system.simulate(near, reduce)
+        return self.stated.simulate(near, reduce)
 
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
-        return tones_of(self._system, point)
+        return tones_of(self.stated, point)
 
 
 def _cut(bundle: Bundle, share: float) -> Bundle:
