@@ -127,8 +127,8 @@ def rivals(
             # Straight lines go far along what tells little, and may miss the valley.
             closer = _as_strong(system, law, state) or state
             led = min(led, lead_from(system, law, closer, law.nuisance), key=cost_of)
-        if cost_of(led) > cost_of(law) + WORTH_IT:
-            # In few places by straight lines, where parameters make up for the others.
+        if led.left < noise_of(system) and cost_of(led) > cost_of(law) + WORTH_IT:
+            # In few places by straight lines, and parameters make up for the others.
             there = _in_its_places(system, law, state)
             if there is not None and there.hypothesis.key != state.hypothesis.key:
                 anew = follow_ring(system, np.zeros_like(law.nuisance), there, everything=True)
