@@ -17,7 +17,7 @@ from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Part
-from analysis.engine.instead import begun_instead
+from analysis.engine.instead import begun_instead, instead
 from analysis.engine.kin import lead_from
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
@@ -125,33 +125,40 @@ def rivals(
         led = lead_from(system, law, state, nuisances_of(found, one))
         if not (led.to_end and led.left < noise_of(system)):
             # Straight lines go far along what tells little, and may miss the valley.
-            closer = _as_strong(system, law, state) or state
+            closer = _as_strong(system, law, state, same=True) or state
             led = min(led, lead_from(system, law, closer, law.nuisance), key=cost_of)
         if led.left < noise_of(system) and cost_of(led) > cost_of(law) + WORTH_IT:
             # In few places by straight lines, and parameters make up for the others.
-            there = _in_its_places(system, law, state)
-            if there is not None and there.hypothesis.key != state.hypothesis.key:
+            there = _as_strong(system, law, state, same=False)
+            if there is not None:
                 anew = follow_ring(system, np.zeros_like(law.nuisance), there, everything=True)
                 led = min(led, anew, key=cost_of)
         yield led
 
 
-def _as_strong(system: System, law: Followed, state: State) -> State | None:
-    """A rival as strong as the cause that it stands for; None: it is in other places."""
-    there = _in_its_places(system, law, state)
-    return there if there and there.hypothesis.key == state.hypothesis.key else None
-
-
-def _in_its_places(system: System, law: Followed, state: State) -> State | None:
-    """A rival in the places of the cause that it stands for, as strong; None: it has none there.
+def _as_strong(system: System, law: Followed, state: State, *, same: bool) -> State | None:
+    """A rival in the places of the cause that it stands for, as strong as that.
 
     Nor has it more than one number in a place: how those share what it does, straight lines tell.
+
+    Parameters
+    ----------
+    system, law
+        With that cause.
+    state
+        With the rival, in the places that straight lines say.
+    same
+        Whether these are the same; None: they are not, or are.
     """
     on = state.hypothesis.names
     (known,), (other,) = ({*law.names} - {*on}, {*on} - {*law.names})
     candidate = state.candidates[other]
     one_each = len({one.place for one in candidate.terms}) == len(candidate.terms)
     if candidate.fixed or not one_each:
+        return None
+    assert law.state is not None
+    there = instead(law.state, known, other)
+    if there is None or (there.hypothesis.key == state.hypothesis.key) is not same:
         return None
     return begun_instead(Samples(system, everything=True), law, known, other)
 

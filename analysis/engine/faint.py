@@ -154,11 +154,12 @@ def faint(
     old = [place for place in asked if place in kept]
     if old:
         changes, places = np.concatenate([changes, [kept[one] for one in old]]), places + old
-    does_of = dict(zip(places, changes[numbers:], strict=True))
-    strides = _worth_asking(strides, changes[:count], does_of)
-    points = [one.point(followed.nuisance) for one in strides]
-    whole = [here - one for one in samples.residuals(points)]
-    changes = np.concatenate([changes, np.array(whole).reshape(-1, len(here))])
+    if strides:
+        does_of = dict(zip(places, changes[numbers:], strict=True))
+        strides = _worth_asking(strides, changes[:count], does_of)
+    if strides:
+        whole = samples.residuals([one.point(followed.nuisance) for one in strides])
+        changes = np.concatenate([changes, [here - one for one in whole]])
     # A simulation that came to nothing tells nothing.
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     allowed = noise_leaves(system.bundles)
@@ -213,8 +214,6 @@ def _worth_asking(
     strides: Sequence[Stride], nuisances: Array, does: Mapping[Place, Array]
 ) -> list[Stride]:
     """Those of which straight lines say that something is to be seen, and not too much."""
-    if not strides:
-        return []
     inside = np.eye(len(nuisances)) + nuisances @ nuisances.T
     found = []
     for one in strides:
