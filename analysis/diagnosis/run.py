@@ -14,7 +14,6 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
 from analysis.engine.diagnosis import Diagnosis, Stage, diagnose
 from analysis.engine.finder import Tell
-from analysis.engine.sharper import Sharper
 from cdpr8.errors import RigFileError
 from cdpr8.rigfile import Rig
 
@@ -90,7 +89,7 @@ def diagnose_recordings(
         diagnosis = diagnose(machine, stop_after=stop_after, tell=tell)
     if diagnosis.system.bundles is not machine.bundles:
         machine = machine.looked_at_in(diagnosis.system.bundles)
-    if isinstance(diagnosis.system, Sharper):
+    if diagnosis.system.nuisances is not machine.nuisances:
         machine = machine.known_as(diagnosis.system.nuisances)
     said = statement(machine, diagnosis)
     improved = None

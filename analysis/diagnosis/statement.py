@@ -12,6 +12,7 @@ from analysis.engine.cause import Cause
 from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.locate import Finding
+from analysis.engine.restated import restatements
 from analysis.engine.system import Candidate, Shape
 from analysis.engine.until import Until
 
@@ -46,7 +47,7 @@ NOT_RULED_OUT = 0.1
 def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
     """The JSON of design, section 6, as a dictionary."""
     sides = {one.name: one.side for one in machine.candidates}
-    judgement, remains, system = diagnosis.judgement, diagnosis.remains, diagnosis.system
+    judgement, remains = diagnosis.judgement, diagnosis.remains
     causes = [] if judgement is None else [_cause(one, sides, machine) for one in judgement.causes]
     likely: list[dict[str, Any]] = []
     if judgement is not None and diagnosis.search is not None and diagnosis.verdict == "none":
@@ -63,7 +64,7 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
             "misfit": None if remains is None else remains.misfit,
             "not_followed": [] if diagnosis.search is None else list(diagnosis.search.aside),
             "shown": diagnosis.judgement is not None and diagnosis.judgement.shown,
-            "foretold_until_s": system.end_s if isinstance(system, Until) else None,
+            "foretold_until_s": _foretold_until_s(diagnosis),
         },
         "fit": _fit(machine, diagnosis.confirmation),
         "located": [_finding(one) for one in diagnosis.findings],
@@ -95,6 +96,12 @@ def not_ruled_out(
     likely = sorted(found.items(), key=lambda one: -one[1])
     return [{"effect": name, "probability": share} for name, share in likely
             if share > NOT_RULED_OUT]  # fmt: skip
+
+
+def _foretold_until_s(diagnosis: Diagnosis) -> float | None:
+    """Up to when the recording counts, in s; None: all of it does."""
+    cut = (one for one in restatements(diagnosis.system) if isinstance(one, Until))
+    return next((one.end_s for one in cut), None)
 
 
 def _limits(diagnosis: Diagnosis) -> list[dict[str, Any]]:

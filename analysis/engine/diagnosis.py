@@ -15,13 +15,12 @@ from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
-from analysis.engine.louder import Louder, coloured
+from analysis.engine.louder import coloured
 from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
+from analysis.engine.restated import restatements
 from analysis.engine.search import REMAINS_ALONE, Search, search
-from analysis.engine.sharper import Sharper
 from analysis.engine.system import Array, Nuisance, System
-from analysis.engine.until import Until
 from cdpr8.errors import UsageError
 
 Stage = Literal["align", "locate", "name", "confirm"]
@@ -33,23 +32,6 @@ POORLY = 2.0
 REMAINS = 0.2
 """Where it was led to the ring's phase: what is so much more than noise for each sample. Laws are
 never quite exact."""
-
-FORETOLD = (
-    "what was recorded after {until_s:.1f} s does not count: up to there it can be foretold, and "
-    "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
-    "resonance, does that, cables that stick and slip or go slack do, and so does something that "
-    "only begins then; another frequency of the drive tells which"
-)
-
-SHARPER = (
-    "{loose}: known better than is stated, as the recording tells. They may be off by {most:.2g} "
-    "{unit}, but fit best where they are off by no more than {told:.2g} {unit}"
-)
-
-LOUDER = (
-    "the noise of samples is {least:.2f} to {most:.2f} times what is stated: what is left is as "
-    "rough as that from one sample to the next, as no physics is, and it is counted as noise"
-)
 
 MOVED = (
     "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it: a number that is off "
@@ -170,7 +152,7 @@ def diagnose(
         return Diagnosis(system, seen.calibrated, found, None, None, None, None, notes=notes)
     searched = search(system, tell, anew=anew, most_causes=most_causes)
     system, problem = searched.system, searched.calibrated.problem
-    notes = (*notes, *_otherwise_than_stated(system))
+    notes = (*notes, *(one.note for one in restatements(system)))
     findings = locate(system.bundles, problem, searched.null.problem.residual)
     candidates = {one.name: one for one in system.candidates}
     noise = noise_of(system)
@@ -196,20 +178,6 @@ def diagnose(
     return Diagnosis(
         system, searched.calibrated, findings, searched, judgement, remains, proof, flagged, notes
     )
-
-
-def _otherwise_than_stated(system: System) -> list[str]:
-    """What was not taken as the system states it."""
-    notes = []
-    while isinstance(system, (Until, Louder, Sharper)):
-        if isinstance(system, Until):
-            notes.append(FORETOLD.format(until_s=system.end_s))
-        elif isinstance(system, Louder):
-            notes.append(LOUDER.format(**system.words()))
-        else:
-            notes.append(SHARPER.format(**system.words()))
-        system = system.stated
-    return notes
 
 
 def _moved_far(system: System, judgement: Judgement) -> list[tuple[Nuisance, float]]:

@@ -7,22 +7,14 @@ second differences of what is left hold all of a white noise, and next to nothin
 Neumann 1941); and where fourth differences tell the same, nothing rough is in them but that.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    System,
-    tones_of,
-)
+from analysis.engine.restated import Restated
+from analysis.engine.system import Array, Bundle, Point, System
 from analysis.engine.whiten import sigmas_of
 
 ORDERS = (2, 4)
@@ -52,13 +44,18 @@ SAME = 4.0
 LEAST_SAMPLES = 50
 """That a channel needs."""
 
+LOUDER = (
+    "the noise of samples is {least:.2f} to {most:.2f} times what is stated: what is left is as "
+    "rough as that from one sample to the next, as no physics is, and it is counted as noise"
+)
 
-class Louder:
+
+class Louder(Restated):
     """A system whose noise is told by what is left of its samples.
 
     Parameters
     ----------
-    system
+    stated
         As it is stated.
     times
         Variance of the noise over what is stated, one array for each bundle, shape (channels,).
@@ -66,29 +63,19 @@ class Louder:
         From how many independent values that is known, one for each bundle.
     """
 
-    def __init__(self, system: System, times: Sequence[Array], known_from: Sequence[int]) -> None:
-        self.stated = system
-        self.name = system.name
-        self.nuisances: Sequence[Nuisance] = system.nuisances
-        self.candidates: Sequence[Candidate] = system.candidates
-        self.bundles: tuple[Bundle, ...] = tuple(
+    def __init__(self, stated: System, times: Sequence[Array], known_from: Sequence[int]) -> None:
+        super().__init__(stated)
+        self.bundles = tuple(
             replace(one, covariance=one.covariance * np.sqrt(np.outer(by, by)), noise_from=count)
-            for one, by, count in zip(system.bundles, times, known_from, strict=True)
+            for one, by, count in zip(stated.bundles, times, known_from, strict=True)
         )
-        self.times = tuple(times)
+        self.times = np.sqrt(np.concatenate(times))
+        """Sigma of the noise over what is stated, shape (channels of all bundles,)."""
 
-    def words(self) -> dict[str, float]:
-        """By how much sigmas differ from what was stated, at least and at most."""
-        every = np.sqrt(np.concatenate(self.times))
-        return {"least": float(every.min()), "most": float(every.max())}
-
-    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
-        """See `System`."""
-        return self.stated.simulate(points, reduce)
-
-    def tones_hz(self, point: Point) -> Array:
-        """See `Ringing`."""
-        return tones_of(self.stated, point)
+    @property
+    def note(self) -> str:
+        """See `Restated`."""
+        return LOUDER.format(least=self.times.min(), most=self.times.max())
 
 
 def louder_than_stated(system: System, point: Point) -> Louder | None:

@@ -13,9 +13,10 @@ from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.found import Start
 from analysis.engine.guess import Guess
-from analysis.engine.louder import MOST, Louder, louder_than_stated
+from analysis.engine.louder import MOST, louder_than_stated
 from analysis.engine.part import has_several
 from analysis.engine.refine import Refiner
+from analysis.engine.restated import Restated
 from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.screen import Scored
 from analysis.engine.sensitivity import Progress
@@ -149,7 +150,7 @@ def as_loud_as_it_is(system: System, nothing: Followed) -> tuple[System, Start] 
     None: it is what is stated, or what is left is more than any noise.
     """
     led = nothing.to_end and nothing.about is None and nothing.left < FAINT * MOST
-    if not led or isinstance(system, (Louder, Sharper, Until)):
+    if not led or isinstance(system, Restated):
         return None
     found = louder_than_stated(system, nothing.point)
     return None if found is None else (found, Start(nothing.nuisance, near=True))

@@ -7,29 +7,26 @@ of eight need not move at all, the eighth was hardly meant to. One share of what
 for all of them alike, by evidence: for parameters alone, and for each single cause beside them.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import singles_of
+from analysis.engine.restated import Restated
 from analysis.engine.screen import Screen
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    System,
-    tones_of,
-)
+from analysis.engine.system import Array, Candidate, Point, System
 
 SHARES = (0.3, 0.1, 0.03, 0.01)
 """Of what is stated, that may be all that there is."""
+
+SHARPER = (
+    "{loose}: known better than is stated, as the recording tells. They may be off by {most:.2g} "
+    "{unit}, but fit best where they are off by no more than {told:.2g} {unit}"
+)
 
 
 class Told(NamedTuple):
@@ -51,47 +48,37 @@ class Told(NamedTuple):
     rises: float
 
 
-class Sharper:
+class Sharper(Restated):
     """A system whose loosely known parameters are known better.
 
     Parameters
     ----------
-    system
+    stated
         As it is stated.
     told
         How well they are known.
     """
 
-    def __init__(self, system: System, told: Told) -> None:
-        self.stated = system
+    def __init__(self, stated: System, told: Told) -> None:
+        super().__init__(stated)
         self.told = told
-        self.name = system.name
-        self.bundles: Sequence[Bundle] = system.bundles
-        self.candidates: Sequence[Candidate] = system.candidates
-        self.scales = scales_of(system, told.share)
+        self.scales = scales_of(stated, told.share)
         """How much of its sigma is left of each parameter, shape (p,)."""
-        self.nuisances: tuple[Nuisance, ...] = tuple(
+        self.nuisances = tuple(
             replace(one, sigma=scale * one.sigma)
-            for one, scale in zip(system.nuisances, self.scales, strict=True)
+            for one, scale in zip(stated.nuisances, self.scales, strict=True)
         )
 
-    def words(self) -> dict[str, str | float]:
-        """Which parameters, what was stated of the first, and what is told of it."""
+    @property
+    def note(self) -> str:
+        """See `Restated`: which parameters, what was stated of the first, and what is told."""
         loose = [one for one in self.stated.nuisances if one.loose]
-        more = f" and {len(loose) - 1} more" if len(loose) > 1 else ""
-        stated = loose[0].sigma
-        return {"loose": f"{loose[0].name}{more}", "unit": loose[0].unit, "most": stated,
-                "told": self.told.share * stated}  # fmt: skip
+        first, more = loose[0], f" and {len(loose) - 1} more" if len(loose) > 1 else ""
+        told = self.told.share * first.sigma
+        return SHARPER.format(loose=first.name + more, most=first.sigma, told=told, unit=first.unit)
 
-    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
-        """See `System`."""
-        return self.stated.simulate([self._as_stated(one) for one in points], reduce)
-
-    def tones_hz(self, point: Point) -> Array:
-        """See `Ringing`."""
-        return tones_of(self.stated, self._as_stated(point))
-
-    def _as_stated(self, point: Point) -> Point:
+    def as_stated(self, point: Point) -> Point:
+        """See `Restated`."""
         return replace(point, nuisance=self.scales * point.nuisance)
 
 

@@ -1,54 +1,48 @@
 """A system up to some time: what comes after counts for nothing."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    System,
-    tones_of,
+from analysis.engine.restated import Restated
+from analysis.engine.system import Bundle, Point, Segment, System
+
+FORETOLD = (
+    "what was recorded after {until_s:.1f} s does not count: up to there it can be foretold, and "
+    "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
+    "resonance, does that, cables that stick and slip or go slack do, and so does something that "
+    "only begins then; another frequency of the drive tells which"
 )
 
 
-class Until:
+class Until(Restated):
     """A system whose recordings are looked at up to a share of their time.
 
     Parameters
     ----------
-    system
+    stated
         All of it.
     share
         Of the time of each bundle, above 0.
     """
 
-    def __init__(self, system: System, share: float) -> None:
-        self.stated = system
+    def __init__(self, stated: System, share: float) -> None:
+        super().__init__(stated)
         self.share = share
-        self.name = system.name
-        self.nuisances: Sequence[Nuisance] = system.nuisances
-        self.candidates: Sequence[Candidate] = system.candidates
-        self.bundles: tuple[Bundle, ...] = tuple(_cut(one, share) for one in system.bundles)
+        self.bundles = tuple(_cut(one, share) for one in stated.bundles)
 
     @property
     def end_s(self) -> float:
         """When the last that counts was recorded."""
         return max(one.end_s for bundle in self.bundles for one in bundle.segments)
 
-    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
-        """See `System`."""
-        near = [replace(one, upto=min(one.upto, self.share)) for one in points]
-        return self.stated.simulate(near, reduce)
+    @property
+    def note(self) -> str:
+        """See `Restated`."""
+        return FORETOLD.format(until_s=self.end_s)
 
-    def tones_hz(self, point: Point) -> Array:
-        """See `Ringing`."""
-        return tones_of(self.stated, point)
+    def as_stated(self, point: Point) -> Point:
+        """See `Restated`."""
+        return replace(point, upto=min(point.upto, self.share))
 
 
 def _cut(bundle: Bundle, share: float) -> Bundle:
