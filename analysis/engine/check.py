@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.engine.part import rings
-from analysis.engine.recorded import check_bundles, name_of
+from analysis.engine.recorded import check_bundles, looked_at, name_of
 from analysis.engine.stated import check_candidates, check_lists, check_nuisances
 from analysis.engine.system import Bundle, Candidate, Point, Prediction, Setting, System
+from analysis.engine.unlikely import rounded, unlikely
 from cdpr8.errors import DataError
 
 LEAST_CHANGE = 1e-12
@@ -35,7 +35,8 @@ def check(system: System) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        What does nothing by itself, which may be as it should: a sentence for each.
+        What may be as it should and is seldom meant, a sentence for each: a dead channel, another
+        unit, rounding; and of what does not ring what does nothing by itself.
 
     Raises
     ------
@@ -64,7 +65,8 @@ def check(system: System) -> tuple[str, ...]:
             where="simulate",
             remedy="draw no random numbers, keep no state, and hand `reduce` arrays of their own",
         )
-    return () if rings(system) else _each(system, nominal, found)
+    odd = unlikely(system.bundles, found)
+    return odd if rings(system) else (*odd, *_each(system, nominal, found))
 
 
 def _each(system: System, nominal: Point, at: Prediction) -> tuple[str, ...]:
@@ -112,7 +114,8 @@ def _each(system: System, nominal: Point, at: Prediction) -> tuple[str, ...]:
             where="simulate",
             remedy="use point.nuisance (in sigmas), or leave out nuisances that do nothing",
         )
-    return tuple(f"{what} changes nothing that is looked at" for what in idle)
+    coarse = rounded(system.bundles, [at, *found]) if found else ()
+    return (*coarse, *(f"{what} changes nothing that is looked at" for what in idle))
 
 
 def _on(nominal: Point, candidate: Candidate, term: str) -> Point:
@@ -193,14 +196,6 @@ def _check_prediction(bundles: Sequence[Bundle], found: Any, what: str) -> None:
                 where=f"simulate, {name_of(bundle, i)}",
                 remedy="simulate with finer steps, or take a smaller `step`",
             )
-
-
-def looked_at(bundle: Bundle) -> NDArray[np.bool_]:
-    """Which samples lie in a segment, shape (n,)."""
-    inside = np.zeros(len(bundle.t_s), dtype=bool)
-    for one in bundle.segments:
-        inside |= one.holds(bundle.t_s)
-    return inside
 
 
 def _changes(bundles: Sequence[Bundle], at: Prediction, found: Prediction) -> bool:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.engine.system import Bundle, Segment
 from cdpr8.errors import DataError
@@ -19,6 +20,14 @@ def name_of(bundle: Bundle, place: int) -> str:
     """Which bundle it is, in words."""
     names = ", ".join(map(str, bundle.names)) if isinstance(bundle.names, tuple) else "?"
     return f"bundle {place} ({bundle.record + ': ' if bundle.record else ''}{names})"
+
+
+def looked_at(bundle: Bundle) -> NDArray[np.bool_]:
+    """Which samples lie in a segment, shape (n,)."""
+    inside = np.zeros(len(bundle.t_s), dtype=bool)
+    for one in bundle.segments:
+        inside |= one.holds(bundle.t_s)
+    return inside
 
 
 def check_bundles(bundles: Sequence[Bundle]) -> None:

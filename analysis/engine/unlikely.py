@@ -1,0 +1,105 @@
+"""What is recorded or simulated and is seldom meant: a dead channel, another unit, rounding.
+
+None of it is an error by itself, and each makes a diagnosis of something else: so it is said.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.engine.recorded import looked_at, name_of
+from analysis.engine.system import Array, Bundle, Prediction
+from analysis.engine.whiten import sigmas_of
+
+LEAST_SAMPLES = 10
+"""Of fewer nothing is said."""
+
+OTHER_UNIT = 100.0
+"""What is recorded varies so many times as much as what is simulated, or as little."""
+
+VARIES = 10.0
+"""Standard deviations of the noise, by which one of the two varies there."""
+
+COARSE = 0.1
+"""Rounding to more than this share of the noise is felt."""
+
+DECIMALS = range(-2, 7)
+"""To so many places numbers are rounded."""
+
+
+def unlikely(bundles: Sequence[Bundle], nominal: Prediction) -> tuple[str, ...]:
+    """What is hardly meant, a sentence for each.
+
+    Parameters
+    ----------
+    bundles
+        What was recorded.
+    nominal
+        What is simulated, nothing left out.
+    """
+    found = []
+    for i, (bundle, seen) in enumerate(zip(bundles, nominal, strict=True)):
+        inside = looked_at(bundle)
+        if int(inside.sum()) >= LEAST_SAMPLES:
+            where = name_of(bundle, i)
+            found += [f"{where}: {one}" for one in _channels(bundle, inside, seen[inside])]
+    return tuple(found)
+
+
+def _channels(bundle: Bundle, inside: NDArray[np.bool_], seen: Array) -> Iterator[str]:
+    recorded, sigmas = bundle.value[inside], np.median(sigmas_of(bundle)[inside], axis=0)
+    for k, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
+        values, simulated, sigma = recorded[:, k], seen[:, k], float(sigmas[k])
+        values = values[np.isfinite(values)]
+        if not len(values):
+            continue
+        if np.ptp(values) == 0.0:
+            yield (
+                f"{name!r} is {values[0]:g} {unit} in all of {len(values)} samples, though its "
+                f"noise is stated as {sigma:.2g} {unit}. A channel that is dead names causes: "
+                "leave it out"
+            )
+            continue
+        spread, expected = float(np.std(values)), float(np.std(simulated))
+        varies = max(spread, expected) > VARIES * sigma and expected > 0.0
+        if varies and not 1.0 / OTHER_UNIT < spread / expected < OTHER_UNIT:
+            yield (
+                f"{name!r} varies by {spread:.2g} {unit} as recorded, and by {expected:.2g} {unit} "
+                "as simulated. Both are taken to be in the unit that is stated"
+            )
+
+
+def rounded(bundles: Sequence[Bundle], simulated: Sequence[Prediction]) -> tuple[str, ...]:
+    """Channels that a simulator rounds, a sentence for each.
+
+    Parameters
+    ----------
+    bundles
+        What was recorded.
+    simulated
+        Several points: one alone may be a round number by its nature.
+    """
+    found = []
+    for i, bundle in enumerate(bundles):
+        inside = looked_at(bundle)
+        sigmas = np.median(sigmas_of(bundle)[inside], axis=0)
+        for k, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
+            step = min(_rounded_to(one[i][inside, k]) for one in simulated)
+            if step > COARSE * sigmas[k]:
+                found.append(
+                    f"{name_of(bundle, i)}: {name!r} is simulated in steps of {step:g} {unit}, "
+                    f"beside a noise of {sigmas[k]:.2g} {unit}. Small changes are lost in that: "
+                    "round nothing"
+                )
+    return tuple(found)
+
+
+def _rounded_to(values: Array) -> float:
+    """The step of a decimal place to which all of it is rounded; 0: none."""
+    if np.ptp(values) == 0.0:
+        return 0.0
+    for places in DECIMALS:
+        if np.allclose(values, np.round(values, places), rtol=1e-14, atol=10.0**-places * 1e-6):
+            return float(10.0**-places)
+    return 0.0
