@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from analysis.engine.system import Array, Candidate
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 
 HANGS_NOWHERE = 0.5
 """Of how likely slack is otherwise: where no tension comes to zero, a cable that is too long is

@@ -6,7 +6,7 @@ from itertools import chain
 
 import numpy as np
 
-from analysis.engine.system import Candidate, Shape, Term
+from analysis.engine.candidate import Candidate, Shape, Term
 from model.library.discovery import library
 from model.library.effect import Effect, Parameter
 

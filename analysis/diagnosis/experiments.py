@@ -11,9 +11,9 @@ from analysis.diagnosis.measurements import Measurement, measurement
 from analysis.diagnosis.menu import write_rig
 from analysis.diagnosis.outlook import ENOUGH, IN_EARNEST, Outlook, Survey, survey
 from analysis.diagnosis.telling import information_bits
+from analysis.engine.array import Array
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.judge import Judgement
-from analysis.engine.system import Array
 
 __all__ = ["campaign", "next_experiment", "survey"]
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
-from analysis.engine.system import Array, Bundle
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.whiten import sigmas_of
 from model import Task
 from model.method import find_method

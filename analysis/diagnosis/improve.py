@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.nuisances import Meaning
+from analysis.engine.candidate import Setting
 from analysis.engine.diagnosis import Diagnosis
-from analysis.engine.system import Point, Setting
+from analysis.engine.system import Point
 from cdpr8 import CABLES
 from cdpr8.errors import RigFileError, ToolkitError
 from cdpr8.rigfile import load_rig

@@ -12,7 +12,7 @@ from analysis.diagnosis.candidates import (
     begun_name,
 )
 from analysis.diagnosis.sighting import Sighting
-from analysis.engine.system import Setting
+from analysis.engine.candidate import Setting
 from model.library.discovery import library
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from analysis.diagnosis.moving import active
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
-from analysis.engine.system import Array
+from analysis.engine.array import Array
 from analysis.engine.whiten import sigmas_of
 from model import ActiveEffect, Simulation
 from model.effects.frames_dropped import PLACES

@@ -19,7 +19,9 @@ from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.diagnosis.sighting import sighting_of
-from analysis.engine.system import Bundle, Candidate, Nuisance, Point, Prediction
+from analysis.engine.bundle import Bundle
+from analysis.engine.candidate import Candidate
+from analysis.engine.system import Nuisance, Point, Prediction
 from cdpr8.crew import Crew
 from model import Simulation, Task, simulate_many
 from model.library.discovery import library

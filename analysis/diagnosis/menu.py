@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from analysis.diagnosis.recording import Recording, segments
-from analysis.engine.system import Bundle
+from analysis.engine.bundle import Bundle
 from cdpr8.rigfile import Excitation, Rig, load_rig
 from cdpr8.rigfile.checks import structure_matrix_at_rest
 from model import Machine, simulate

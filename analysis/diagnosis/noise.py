@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.system import Bundle
+from analysis.engine.bundle import Bundle
 from cdpr8.rigfile.excitation import Excitation
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ from threadpoolctl import threadpool_limits
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.menu import Experiment, experiments
 from analysis.diagnosis.telling import Rival, Telling, information_bits
+from analysis.engine.array import Array
 from analysis.engine.cause import Cause
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.fitted import Fitted
 from analysis.engine.judge import Judgement
-from analysis.engine.system import Array
 
 ENOUGH = float(np.log(20.0))
 """Expected log odds from which two rivals count as told apart."""

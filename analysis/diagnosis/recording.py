@@ -16,7 +16,7 @@ from analysis.diagnosis.noise import (
     stated_covariance,
     with_instants,
 )
-from analysis.engine.system import Bundle, Segment
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.tones import RESONANT, resonant
 from analysis.series import about_bend, measured_cables
 from cdpr8.errors import DataError

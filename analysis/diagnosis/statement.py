@@ -8,12 +8,12 @@ from typing import Any
 
 from analysis.diagnosis.candidates import PAIRS
 from analysis.diagnosis.machine import RecordedMachine
+from analysis.engine.candidate import Candidate, Shape
 from analysis.engine.cause import Cause
 from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.locate import Finding
 from analysis.engine.restated import restatements
-from analysis.engine.system import Candidate, Shape
 from analysis.engine.until import Until
 
 WHEN = {

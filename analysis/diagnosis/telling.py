@@ -15,11 +15,12 @@ import numpy as np
 
 from analysis.diagnosis.machine import LANES_FROM, RecordedMachine
 from analysis.diagnosis.menu import Experiment
+from analysis.engine.array import Array
 from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
 from analysis.engine.sensitivity import nuisance_columns, simulate_features
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point
+from analysis.engine.system import Point
 from analysis.engine.variance import base_variance, form_variance
 from analysis.engine.weights import TEMPER
 

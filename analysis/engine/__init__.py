@@ -5,19 +5,11 @@ noise, a simulator, parameters with how well they are known, and candidates for 
 may have left out. It finds out which of these the recording asks for, if any.
 """
 
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Setting, Shape, Term
 from analysis.engine.diagnosis import Diagnosis, diagnose
 from analysis.engine.hypothesis import Hypothesis
-from analysis.engine.system import (
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Segment,
-    Setting,
-    Shape,
-    System,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, System
 
 __all__ = [
     "Bundle",

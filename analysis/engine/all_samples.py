@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
 from analysis.engine.faint import FORMS, UNEXPLAINED, inexact
 from analysis.engine.fitted import Fitted
@@ -17,7 +18,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.sure import as_sure
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 from analysis.engine.way import LEAVES, STRAIN
 from analysis.engine.whiten import noise_expected, noise_leaves
 

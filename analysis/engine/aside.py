@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from analysis.engine.array import Array
 from analysis.engine.by_ring import by_ring
 from analysis.engine.finder import Tell
 from analysis.engine.fitted import Fitted
@@ -11,7 +12,6 @@ from analysis.engine.found import Found, Start
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
-from analysis.engine.system import Array
 
 
 class _Some(Refiner):

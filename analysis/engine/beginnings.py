@@ -8,11 +8,12 @@ from there.
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.differences import differences
 from analysis.engine.followed import Followed
 from analysis.engine.ring_fit import STEPS
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 from analysis.engine.way import WINDOWS, Way
 
 BEGINNING, TOLD = WINDOWS[0], 0.27

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.all_samples import cost_of
+from analysis.engine.array import Array
 from analysis.engine.beginnings import begun_otherwise
 from analysis.engine.cycles import valley
 from analysis.engine.faint import faint
@@ -19,7 +20,7 @@ from analysis.engine.near_noise import as_loud_as_it_is, near_noise, sharper_tha
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import Array, System, free_of
+from analysis.engine.system import System, free_of
 from analysis.engine.way import STRAIN
 from analysis.engine.whole import whole_onward
 

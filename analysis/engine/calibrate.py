@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
 from analysis.engine.evidence import Frame, Problem, directions
 from analysis.engine.lens import Lens
 from analysis.engine.part import has_several, rings
 from analysis.engine.sensitivity import Progress, nuisance_columns, simulate_features
-from analysis.engine.system import Array, Point, System
+from analysis.engine.system import Point, System
 from analysis.engine.variance import base_variance, form_variance
 
 ROUNDS, ROUNDS_ANEW = 6, 20

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.fitted import Fitted
-from analysis.engine.system import Array, Candidate
 
 COVERED = 0.95
 """A set of indistinguishable causes holds this much of the probability."""

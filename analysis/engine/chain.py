@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.engine.all_samples import noise_of
+from analysis.engine.array import Array
 from analysis.engine.cycles import Valley, information_of, valley
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known, Told
@@ -20,7 +21,7 @@ from analysis.engine.part import Part, records_of
 from analysis.engine.ring_fit import FAR, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 from analysis.engine.way import LEAVES
 
 ANOTHER = 500.0

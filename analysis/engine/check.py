@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from analysis.engine.bundle import Bundle
+from analysis.engine.candidate import Candidate, Setting
 from analysis.engine.part import rings
 from analysis.engine.recorded import check_bundles, looked_at, name_of
 from analysis.engine.stated import check_candidates, check_lists, check_nuisances
-from analysis.engine.system import Bundle, Candidate, Point, Prediction, Setting, System
+from analysis.engine.system import Point, Prediction, System
 from analysis.engine.unlikely import rounded, unlikely
 from cdpr8.errors import DataError
 

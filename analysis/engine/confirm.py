@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.part import Part, records_of, rings
 from analysis.engine.ring_fit import EFFORT, follow_ring
 from analysis.engine.search import Search
 from analysis.engine.state import State
-from analysis.engine.system import Array, Bundle, Point, Ring, System
+from analysis.engine.system import Point, Ring, System
 from analysis.engine.whiten import Whiten
 
 RINGS: tuple[Ring, ...] = ("left_out", "as_is")

@@ -14,13 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.differences import differences
 from analysis.engine.followed import Followed
 from analysis.engine.in_tune import in_tune, longest_s, tones_by_number
 from analysis.engine.known import Known
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import Array, Ringing, System
+from analysis.engine.system import Ringing, System
 
 TURNS_RAD = (7.73, 14.07, 20.37)
 """Where a tone that is so far out of phase at the end is in phase best on the whole: maxima of

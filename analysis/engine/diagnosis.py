@@ -6,6 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from analysis.engine.all_samples import noise_of
+from analysis.engine.array import Array
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.check import check
 from analysis.engine.confirm import Confirmation, confirm
@@ -20,7 +21,7 @@ from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
 from analysis.engine.restated import restatements
 from analysis.engine.search import REMAINS_ALONE, Search, search
-from analysis.engine.system import Array, Nuisance, System
+from analysis.engine.system import Nuisance, System
 from cdpr8.errors import UsageError
 
 Stage = Literal["align", "locate", "name", "confirm"]

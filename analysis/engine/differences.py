@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import Array
 
 COARSE = 1.5
 """A difference that moves all samples together by more than this, in units of noise, may have

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import FORM_SIZES
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import LOG_COST, LOG_ODDS
-from analysis.engine.system import Candidate
 
 FORMS_OFF = FORM_SIZES[-1]
 """Where nothing rings: laws that leave so many of their errors of form, as a share of the mismatch,

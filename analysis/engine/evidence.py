@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 
+from analysis.engine.array import Array
 from analysis.engine.lens import Labels
 from analysis.engine.solve import bounded, root_beside_one
-from analysis.engine.system import Array
 from analysis.engine.variance import form_variance
 
 FORM_SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)

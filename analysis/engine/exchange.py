@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from analysis.engine.all_samples import WORTH_IT, cost_of, noise_of
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of
 from analysis.engine.followed import Followed
@@ -23,7 +25,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate, System
+from analysis.engine.system import System
 
 BEHIND = 15.0
 """What promises to stay this far behind the cause that it stands for is no rival of it,"""

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate, Setting
 from analysis.engine.differences import differences
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.followed import Followed
@@ -19,7 +21,7 @@ from analysis.engine.lens import Labels
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
 from analysis.engine.stride import LOST, SEEN, Stride
-from analysis.engine.system import Array, Candidate, Point, Setting, System
+from analysis.engine.system import Point, System
 from analysis.engine.variance import SPREAD
 from analysis.engine.whiten import noise_leaves
 

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import Weighed
 from analysis.engine.faint import Faint
 from analysis.engine.fitted import Fitted
@@ -14,7 +16,6 @@ from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen, grouped
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate
 
 SINGLES, PARENTS, PAIRS = 8, 3, 6
 """So many hypotheses are kept, and so many looked beside."""

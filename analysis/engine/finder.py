@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.candidate import Candidate
 from analysis.engine.fitted import Fitted
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sensitivity import Columns, term_columns
-from analysis.engine.system import Candidate
 
 Tell = Callable[[str, int, int], None]
 """Told what is being done, how much of it is done, and of how much."""

@@ -11,10 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Setting
 from analysis.engine.lens import Lens
 from analysis.engine.sensitivity import simulate_features, sound
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point, Setting, System
+from analysis.engine.system import Point, System
 
 FINEST = 0.02
 """Differences of nuisances where everything is simulated anew, in sigmas, at most."""

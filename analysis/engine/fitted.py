@@ -6,10 +6,11 @@ from math import nan
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.evidence import Problem, Weighed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point
+from analysis.engine.system import Point
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.state import State
-from analysis.engine.system import Array, Point
+from analysis.engine.system import Point
 
 STEP, FINE = 5e-4, 0.025
 """Of the difference that tells what a parameter does, in sigmas, and of what is on, as a share of

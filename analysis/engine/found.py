@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from analysis.engine.array import Array
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import guessed, one_more
 from analysis.engine.fitted import Fitted
@@ -11,7 +12,7 @@ from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
-from analysis.engine.system import Array, System, free_of
+from analysis.engine.system import System, free_of
 
 
 class Found(NamedTuple):

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.candidate import Candidate
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.instead import begun_instead
@@ -19,7 +20,6 @@ from analysis.engine.kin import kin_left
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import Number
-from analysis.engine.system import Candidate
 from analysis.engine.way import WINDOWS, Way
 
 STRETCH = WINDOWS[2]

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from analysis.engine.array import Array
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.state import State
-from analysis.engine.system import Array
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import comb, log
 
-from analysis.engine.system import Candidate
+from analysis.engine.candidate import Candidate
 
 LOG_ODDS = -5.0
 """Prior odds of one candidate being there, as a logarithm: about one in a hundred and fifty."""

@@ -8,6 +8,7 @@ once more with them let out of it, and what is gained by leaving it is told apar
 from copy import copy
 from dataclasses import dataclass, replace
 
+from analysis.engine.candidate import Candidate
 from analysis.engine.finder import ASKS, SMALL, STARTS
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Part
@@ -15,7 +16,6 @@ from analysis.engine.part import rings
 from analysis.engine.screen import Scored
 from analysis.engine.search import Search
 from analysis.engine.settled import counted, polished, rested
-from analysis.engine.system import Candidate
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import Array, Ringing, System
+from analysis.engine.system import Ringing, System
 
 SOUGHT = 0.1
 """A ring is sought this near a tone, as a share of it, and within what is known of it."""

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Part
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array
 
 STRENGTHS = (1.0, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.12,
              1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0)  # fmt: skip

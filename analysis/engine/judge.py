@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
 from analysis.engine.doubt import doubt_beside, hardly_explains
 from analysis.engine.fitted import Fitted
 from analysis.engine.moved import rise_of
-from analysis.engine.system import Array, Candidate
 from analysis.engine.weights import TEMPER_EXACT, weights_of
 
 NEGLIGIBLE, STANDS_OUT = 0.02, 15.0

@@ -10,6 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.all_samples import cost_of, farthest_first, noise_of
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.instead import begun_instead
@@ -17,7 +19,7 @@ from analysis.engine.part import has_several
 from analysis.engine.ring_fit import BEHIND, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate, System
+from analysis.engine.system import System
 from analysis.engine.way import HOPELESS
 
 SHARES = (0.5, 0.2, 0.05)

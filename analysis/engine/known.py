@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.part import Part
-from analysis.engine.system import Array
 
 LOOSE = 0.02
 """What is on is held where it is as if its number were known to its step over this."""

@@ -13,6 +13,7 @@ from analysis.engine.all_samples import (
     nothing_again,
     shown_the_way,
 )
+from analysis.engine.array import Array
 from analysis.engine.cycles import tuned
 from analysis.engine.exchange import Exchange
 from analysis.engine.faint import Faint, faint
@@ -28,7 +29,6 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import Progress
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import State
-from analysis.engine.system import Array
 from analysis.engine.way import HOPELESS
 
 RESTARTS = 1

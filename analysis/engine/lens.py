@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct
 
-from analysis.engine.system import Array, Bundle, Prediction, Segment
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.system import Prediction
 from analysis.engine.tones import drive_frequency_hz, leaked, rings, rings_near
 from analysis.engine.whiten import covariance_over
 from cdpr8.errors import DataError

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.aside import but_for
 from analysis.engine.by_ring import by_ring
 from analysis.engine.chain import Chained, chained
@@ -18,7 +19,7 @@ from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAR
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 
 LIFTED, MOST_LIFTED = 40.0, 6
 """What is no farther behind the best of the pilot, as a score, is led in all recordings, at most so

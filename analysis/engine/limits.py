@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import Frame
 from analysis.engine.faint import Faint
 from analysis.engine.hypothesis import LOG_ODDS, Part, part_log_prior
 from analysis.engine.screen import limits as bounds
 from analysis.engine.screen import magnitude
-from analysis.engine.system import Array, Candidate
 from analysis.engine.weights import EXACT, TEMPER, TEMPER_EXACT
 
 

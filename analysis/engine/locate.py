@@ -11,9 +11,10 @@ import numpy as np
 from scipy.fft import idct
 from scipy.stats import chi2
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.evidence import Problem
 from analysis.engine.lens import Labels
-from analysis.engine.system import Array, Bundle
 from analysis.engine.whiten import covariance_over
 
 SIGNIFICANT = 0.01

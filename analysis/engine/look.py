@@ -2,10 +2,11 @@
 
 from typing import NamedTuple
 
+from analysis.engine.array import Array
 from analysis.engine.calibrate import Calibrated, calibrate
 from analysis.engine.finder import Tell
 from analysis.engine.lens import Lens
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 
 
 class Look(NamedTuple):

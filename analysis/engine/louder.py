@@ -13,8 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.restated import Restated
-from analysis.engine.system import Array, Bundle, Point, System
+from analysis.engine.system import Point, System
 from analysis.engine.whiten import sigmas_of
 
 ORDERS = (2, 4)

@@ -12,6 +12,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import chi2, norm
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import LOG_ODDS, Hypothesis, Part
@@ -19,7 +21,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
 from analysis.engine.sure import as_sure
-from analysis.engine.system import Array, Candidate, Nuisance, System
+from analysis.engine.system import Nuisance, System
 
 STANDS_OUT = 2.0
 """Of its numbers those that moved by more than this are released, or the one that moved most."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.engine.all_samples import WORTH_IT, cost_of, elsewhere_than, noise_of
+from analysis.engine.array import Array
 from analysis.engine.beginnings import begun_otherwise
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import faint_search
@@ -23,7 +24,7 @@ from analysis.engine.sensitivity import Progress
 from analysis.engine.sharper import Sharper, how_sharp, scales_of
 from analysis.engine.stride import strides_of
 from analysis.engine.stride_search import stride_guesses
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 from analysis.engine.until import Until
 from analysis.engine.whole import whole_guesses
 

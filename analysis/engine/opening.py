@@ -6,13 +6,14 @@ long they are. So most of them are of no more of a recording than it takes to te
 
 from collections.abc import Sequence
 
+from analysis.engine.bundle import Bundle
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.found import Start
 from analysis.engine.lifting import LIFTED, MOST_LIFTED
 from analysis.engine.part import has_several, rings
 from analysis.engine.ring_fit import FAINT
-from analysis.engine.system import Bundle, System
+from analysis.engine.system import System
 from analysis.engine.until import Until
 
 TURNS, PERIODS = 70.0, 20.0

@@ -6,16 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    System,
-    tones_of,
-)
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
+from analysis.engine.candidate import Candidate
+from analysis.engine.system import Nuisance, Point, Prediction, System, tones_of
 
 SEVERAL = 3
 """So many recordings and more are led one after the other: all at once takes too long."""

@@ -8,6 +8,7 @@ handed on to the next, and at the end all are led at once, over the little way t
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from analysis.engine.array import Array
 from analysis.engine.by_lines import by_lines
 from analysis.engine.by_ring import by_ring
 from analysis.engine.chain import Chained, chained, left_in
@@ -20,7 +21,7 @@ from analysis.engine.look import look
 from analysis.engine.part import Part, records_of
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, follow_ring
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 
 CHAINS, PILOTS = 2, 3
 """So many are tried to begin with where nothing is left out, and where something is."""

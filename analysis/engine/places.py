@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.candidate import Candidate
 from analysis.engine.exchange import Exchange, without
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import ASKS
 from analysis.engine.hypothesis import Part
-from analysis.engine.system import Candidate
 
 
 def is_placed(candidate: Candidate) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.system import Bundle, Segment
+from analysis.engine.bundle import Bundle, Segment
 from cdpr8.errors import DataError
 
 LEAST_SAMPLES = 3

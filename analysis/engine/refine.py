@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
 from analysis.engine.fitted import Fitted
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.sharpen import sharpened
 from analysis.engine.standing import Standing, misfit_of
 from analysis.engine.state import State
-from analysis.engine.system import Array
 
 ROUNDS = 5
 """Of simulating and solving."""

@@ -13,6 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.all_samples import cost_of
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import Frame
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import ASKS
@@ -23,7 +25,7 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import limits
 from analysis.engine.solve import bounded
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate, System
+from analysis.engine.system import System
 
 ROUNDS, TRIED = 12, 2
 """So often one parameter is exchanged; so many exchanges are led each time until one is closer."""

@@ -4,16 +4,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    System,
-    tones_of,
-)
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
+from analysis.engine.candidate import Candidate
+from analysis.engine.system import Nuisance, Point, Prediction, System, tones_of
 
 
 class Restated(ABC):

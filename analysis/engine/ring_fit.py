@@ -10,11 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 from analysis.engine.way import LOST, WINDOWS, Way
 
 EFFORT, PATIENCE = 1000.0, 300.0

@@ -7,8 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.sensitivity import BATCH
-from analysis.engine.system import Array, Bundle, Point, Prediction, System
+from analysis.engine.system import Point, Prediction, System
 from analysis.engine.whiten import Whiten
 
 FASTEST_HZ = 80.0

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, weigh
 from analysis.engine.hypothesis import LOG_COST, Hypothesis, Part, part_log_prior
 from analysis.engine.solve import bounded
-from analysis.engine.system import Array, Candidate
 from analysis.engine.variance import form_variance
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from analysis.engine.all_samples import noise_of
+from analysis.engine.array import Array
 from analysis.engine.by_lines import by_lines
 from analysis.engine.by_ring import by_ring
 from analysis.engine.calibrate import Calibrated
@@ -22,7 +23,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
 from analysis.engine.settled import settled
 from analysis.engine.sharper import Sharper, Told
-from analysis.engine.system import Array, Point, System
+from analysis.engine.system import Point, System
 from analysis.engine.until import Until
 
 REMAINS_ALONE = 0.1

@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate, Setting
 from analysis.engine.lens import Lens
 from analysis.engine.part import rings
-from analysis.engine.system import Array, Candidate, Point, Setting, System
+from analysis.engine.system import Point, System
 
 Progress = Callable[[int, int], None]
 """Told how many points are done, of how many."""

@@ -13,12 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import singles_of
 from analysis.engine.restated import Restated
 from analysis.engine.screen import Screen
-from analysis.engine.system import Array, Candidate, Point, System
+from analysis.engine.system import Point, System
 
 SHARES = (0.3, 0.1, 0.03, 0.01)
 """Of what is stated, that may be all that there is."""

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import cholesky
 
-from analysis.engine.system import Array
+from analysis.engine.array import Array
 
 
 def root_beside_one(columns: Array) -> Array:

@@ -7,6 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
 from analysis.engine.calibrate import Calibrated
 from analysis.engine.evidence import Frame, Problem, weigh
 from analysis.engine.fine import nuisances_beside, own_columns
@@ -15,7 +16,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
 from analysis.engine.sensitivity import simulate_features, sound
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 
 
 class Standing:

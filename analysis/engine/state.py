@@ -6,9 +6,11 @@ from math import exp, log
 
 import numpy as np
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate, Setting, Shape
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.screen import Scored, limits
-from analysis.engine.system import Array, Candidate, Point, Setting, Shape
+from analysis.engine.system import Point
 
 SHAPE_STEP = 0.05
 """Difference of a shape: of its logarithm, or of its range."""

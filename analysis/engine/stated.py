@@ -5,9 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.part import records_of, rings
 from analysis.engine.recorded import check_number, listed, name_of
-from analysis.engine.system import Bundle, Candidate, Nuisance, Segment, Shape, System, Term
+from analysis.engine.system import Nuisance, System
 from cdpr8.errors import DataError
 
 

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
 from analysis.engine.followed import FINE, Followed
 from analysis.engine.known import LOOSE, Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.solve import bounded
-from analysis.engine.system import Array
 
 HALFWAY = 0.5
 """Of a step that brings less of what it promises, shorter ones are tried:"""

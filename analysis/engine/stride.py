@@ -9,9 +9,11 @@ and straight lines say so, while all of it explains more than anything they prom
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate, Nuisance, Point
+from analysis.engine.system import Nuisance, Point
 
 SIZES = (1.0, 0.2)
 """Of its step, at which each cause is looked at."""

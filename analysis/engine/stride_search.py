@@ -4,13 +4,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from analysis.engine.candidate import Candidate
 from analysis.engine.evidence import weigh
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_by
 from analysis.engine.fitted import Fitted
 from analysis.engine.guess import Guess
 from analysis.engine.screen import LOOSE_FORM
-from analysis.engine.system import Candidate
 
 LEAST, MOST = 0.5, 2.0
 """So many times as much of it may be told from there."""

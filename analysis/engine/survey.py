@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import Number, State
-from analysis.engine.system import Array
 from analysis.engine.way import Way
 
 STRETCHES = (0.12, 0.13, 0.14, 0.15, 0.16)

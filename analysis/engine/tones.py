@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.system import Array, Bundle, Segment
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
 
 FAR_ABOVE = 1.5
 """A tone this many times above the drive is left to ring by whatever kicks it."""

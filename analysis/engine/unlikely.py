@@ -8,8 +8,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.recorded import looked_at, name_of
-from analysis.engine.system import Array, Bundle, Prediction
+from analysis.engine.system import Prediction
 from analysis.engine.whiten import sigmas_of
 
 LEAST_SAMPLES = 10

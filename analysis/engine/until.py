@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.restated import Restated
-from analysis.engine.system import Bundle, Point, Segment, System
+from analysis.engine.system import Point, System
 
 FORETOLD = (
     "what was recorded after {until_s:.1f} s does not count: up to there it can be foretold, and "

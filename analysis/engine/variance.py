@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from analysis.engine.array import Array
 from analysis.engine.lens import Labels, Lens
-from analysis.engine.system import Array
 
 SPILLED = 0.1
 """The error of form reaches lines where the law itself does little: this share of what it does."""

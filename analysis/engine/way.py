@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.engine.array import Array
 from analysis.engine.differences import differences
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
 from analysis.engine.part import has_several
 from analysis.engine.ring_samples import Samples
 from analysis.engine.step import Stepper
-from analysis.engine.system import Array
 
 WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.engine.system import Array, Bundle
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 
 Chosen = NDArray[np.bool_] | NDArray[np.int64] | slice
 """Which samples of a bundle: a mask, their places, or all from one to another."""

@@ -13,6 +13,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from analysis.engine.all_samples import WORTH_IT, cost_of
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import nuisances_of, screen_about
 from analysis.engine.followed import Followed
@@ -22,7 +24,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import Scored, Screen
 from analysis.engine.state import State
-from analysis.engine.system import Array, Candidate, System
+from analysis.engine.system import System
 from analysis.engine.way import LOST
 
 ELSEWHERE, SHARE = 100.0, 0.3

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from analysis.diagnosis.noise import about_line, instants_s, with_instants
-from analysis.engine.system import Array, Bundle, Segment
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.whiten import noise_leaves
 from cdpr8.rigfile import Excitation
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from analysis.diagnosis.statement import cables_of, not_ruled_out, other_cables, parameters_of
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.cause import Cause
-from analysis.engine.system import Candidate, Shape, Term
 
 
 def cause(values: dict[str, float], sigma: float) -> Cause:

@@ -15,7 +15,8 @@ from scipy.io import loadmat
 from scipy.signal import butter, filtfilt
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
-from analysis.engine.system import Array, Prediction
+from analysis.engine.array import Array
+from analysis.engine.system import Prediction
 from tests.validation.shared import Described, candidate, folder, series
 
 RATE_HZ = 1000.0

@@ -12,7 +12,8 @@ import numba
 import numpy as np
 
 from analysis.engine import Bundle, Nuisance, Point, Segment, Shape
-from analysis.engine.system import Array, Prediction
+from analysis.engine.array import Array
+from analysis.engine.system import Prediction
 from tests.validation.shared import Described, candidate
 
 RATE_HZ, COUNT = 20.0, 600

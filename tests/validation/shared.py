@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from analysis.engine import Bundle, Candidate, Diagnosis, Nuisance, Point, Shape, Term
+from analysis.engine.array import Array
 from analysis.engine.search import Search
-from analysis.engine.system import Array, Prediction
+from analysis.engine.system import Prediction
 
 
 def folder(name: str) -> Path:

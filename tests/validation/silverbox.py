@@ -12,7 +12,8 @@ import numpy as np
 from scipy.signal import resample
 
 from analysis.engine import Bundle, Nuisance, Point, Segment
-from analysis.engine.system import Array, Prediction
+from analysis.engine.array import Array
+from analysis.engine.system import Prediction
 from tests.validation.shared import Described, candidate, folder, read_between, series
 
 RATE_HZ = 1e7 / 2**14

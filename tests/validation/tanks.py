@@ -13,7 +13,8 @@ import numba
 import numpy as np
 
 from analysis.engine import Bundle, Nuisance, Point, Segment, Shape
-from analysis.engine.system import Array, Prediction
+from analysis.engine.array import Array
+from analysis.engine.system import Prediction
 from tests.validation.shared import Described, candidate, folder, series
 
 PERIOD_S, STEPS = 4.0, 2  # of a sample, over which the pump's voltage is held

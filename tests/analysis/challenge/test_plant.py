@@ -18,7 +18,7 @@ from analysis.challenge.truth import drawn_offset
 from analysis.diagnosis.candidates import candidates
 from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.sighting import Sighting
-from analysis.engine.system import Setting
+from analysis.engine.candidate import Setting
 from cdpr8.rigfile import Excitation, Rig, load_rig, packaged_rig_path
 from model import ActiveEffect
 from model import simulate as simulate_model

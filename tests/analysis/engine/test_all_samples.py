@@ -14,6 +14,7 @@ from analysis.engine.all_samples import (
     shown_the_way,
     tells_more,
 )
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
@@ -23,7 +24,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import Array, System
+from analysis.engine.system import System
 from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring, state_of
 
 DAMPED = LetGo(ring(0.0, 0.2, 0.0, 0.0))

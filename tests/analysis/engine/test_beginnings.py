@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
 from analysis.engine.beginnings import TOLD, begun_otherwise
 from analysis.engine.by_ring import _nothing
 from analysis.engine.found import Start
 from analysis.engine.ring_fit import FAINT, follow_ring
-from analysis.engine.system import Array, Nuisance, Point
+from analysis.engine.system import Nuisance, Point
 from tests.analysis.engine.test_ring_fit import T_S, TONE_HZ, LetGo, ring
 
 RISE = 0.05

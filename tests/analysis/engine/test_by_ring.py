@@ -7,6 +7,7 @@ import pytest
 
 from analysis.engine import by_lines
 from analysis.engine.by_ring import _abreast, _leads_bent
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
@@ -16,7 +17,7 @@ from analysis.engine.look import look
 from analysis.engine.near_noise import _is_hollow
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.system import Candidate, Nuisance, Term
+from analysis.engine.system import Nuisance
 from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, LetGo, ring, state_of
 
 TONE = Candidate("tone", "tone", "parameter", (Term("share", "share", "1", "", -1.0, 1.0, SIGMA),))

@@ -6,19 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import valley
 from analysis.engine.part import Part
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 T_S = np.arange(0.0, 10.0, 0.02)
 NAMES = ("one", "two", "three", "four")

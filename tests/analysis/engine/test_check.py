@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term, diagnose
+from analysis.engine.array import Array
 from analysis.engine.check import check
-from analysis.engine.system import Array, Prediction
+from analysis.engine.system import Prediction
 from cdpr8.errors import DataError
 
 T_S = np.arange(0.0, 20.0, 0.1)

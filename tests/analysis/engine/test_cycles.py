@@ -6,20 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate
 from analysis.engine.cycles import TURNS_RAD, information_of, valley
 from analysis.engine.followed import Followed
 from analysis.engine.part import Part
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Ringing,
-    Segment,
-)
+from analysis.engine.system import Nuisance, Point, Prediction, Ringing
 
 TONE_HZ, SHARE, SECONDS, NOISE = 5.0, 0.02, 20.0, 0.02
 T_S = np.arange(0.0, SECONDS, 0.02)

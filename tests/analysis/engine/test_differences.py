@@ -6,18 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate
 from analysis.engine.differences import differences
 from analysis.engine.followed import STEP, Followed
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 T_S = np.arange(0.0, 20.0, 0.02)
 TONE_HZ, SHARE = 5.0, 0.15

@@ -8,6 +8,7 @@ import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Term
 from analysis.engine.all_samples import all_samples_say
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
@@ -16,7 +17,7 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import Array, Prediction
+from analysis.engine.system import Prediction
 
 T_S = np.arange(0.0, 20.0, 0.02)
 NOISE, TONE_HZ = 0.01, 5.0

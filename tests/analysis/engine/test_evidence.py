@@ -5,10 +5,10 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.evidence import Frame, Problem, _inverse, directions, weigh
 from analysis.engine.lens import Lens
 from analysis.engine.solve import bounded
-from analysis.engine.system import Bundle, Segment
 from analysis.engine.variance import form_variance
 
 

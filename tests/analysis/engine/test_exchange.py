@@ -9,6 +9,9 @@ import pytest
 
 from analysis.engine import exchange, rival_leader
 from analysis.engine.all_samples import cost_of
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.exchange import Exchange, exchanged, fresh, plainest, rivals
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import kin_beside, others_beside
@@ -20,17 +23,7 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    Shape,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 TIMES_S = np.arange(0.0, 1.0, 0.005)
 NOISE = 0.1

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
 from analysis.engine.fine import BOTH_WAYS, ONE_WAY, columns_of
-from analysis.engine.system import Array
 
 T_S = np.arange(0.0, 40.0, 0.01)
 NOISE = 1e-3

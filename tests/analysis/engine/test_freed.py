@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.kin import lead_from
@@ -12,7 +13,7 @@ from analysis.engine.look import look
 from analysis.engine.moved import freed
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.system import Array, Point
+from analysis.engine.system import Point
 from tests.analysis.engine.test_by_ring import Tuned
 from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, ring, state_of
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
+from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.graduated import STRETCH, alike, as_told, graduated
 from analysis.engine.guess import Guess
@@ -16,7 +17,7 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.survey import sticks, surveyed
-from analysis.engine.system import Array, Prediction
+from analysis.engine.system import Prediction
 
 T_S = np.arange(0.0, 20.0, 0.02)
 NOISE, TONE_HZ, SIGMA = 0.002, 5.0, 0.01

@@ -4,8 +4,8 @@ from math import exp, log
 
 import pytest
 
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.hypothesis import Part, part_log_prior
-from analysis.engine.system import Candidate, Term
 
 PLACES = "12345678"
 TERMS = tuple(Term(f"size@{p}", "size", "N", p, 0.0, 5.0, 0.3) for p in PLACES)

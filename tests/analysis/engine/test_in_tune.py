@@ -7,20 +7,15 @@ import numpy as np
 import pytest
 
 from analysis.engine.all_samples import cost_of
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate
 from analysis.engine.cycles import tuned, valley
 from analysis.engine.followed import Followed
 from analysis.engine.in_tune import in_tune
 from analysis.engine.known import Known
 from analysis.engine.ring_fit import follow_ring
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 TONES_HZ, MIXED = np.array([5.0, 8.3]), np.array([[1.0, 0.3], [-0.5, 1.0]])
 SHARE, SECONDS, NOISE = 0.02, 20.0, 0.02

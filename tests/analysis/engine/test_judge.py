@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.judge import (
@@ -20,7 +21,6 @@ from analysis.engine.judge import (
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
-from analysis.engine.system import Candidate, Term
 from analysis.engine.weights import weights_of
 from tests.analysis.engine.test_ring_fit import DAMPING, STEP, LetGo, ring, state_of
 

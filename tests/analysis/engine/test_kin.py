@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -14,16 +16,7 @@ from analysis.engine.instead import instead
 from analysis.engine.kin import kin_alike, kin_left, lead_instead, part_of_the_way
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
-from analysis.engine.system import (
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    Shape,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 
 def law(name: str, step: float, places: str, *shapes: Shape) -> Candidate:

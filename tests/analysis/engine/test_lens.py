@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.lens import Lens
-from analysis.engine.system import Bundle, Segment
 
 
 def bundle(covariance: np.ndarray, rate_hz: float = 100.0, tones=()) -> Bundle:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from analysis.engine import diagnose
+from analysis.engine.array import Array
 from analysis.engine.louder import Louder, coloured, louder_than_stated
-from analysis.engine.system import Array, Point
+from analysis.engine.system import Point
 from tests.analysis.engine.test_ring_fit import SIGMA, T_S, LetGo, ring
 
 NOTHING = Point(np.zeros(1), {}, "as_is")

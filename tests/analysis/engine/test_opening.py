@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.opening import from_opening, opening_of
 from analysis.engine.search import search
-from analysis.engine.system import Array, Bundle, Point, Segment
+from analysis.engine.system import Point
 from analysis.engine.until import Until
 from tests.analysis.engine.test_ring_fit import SIGMA, LetGo, ring
 

@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from analysis.engine import kin, lifting, pilot
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.by_ring import by_ring
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import Valley, information_of
 from analysis.engine.diagnosis import diagnose
@@ -26,17 +29,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import search
 from analysis.engine.state import State
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    System,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction, System
 
 TONE_HZ, SIGMA, NOISE, OFFSET = 5.0, 0.01, 0.02, 0.05
 T_S = np.arange(0.0, 20.0, 0.02)

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from analysis.engine.all_samples import all_samples_say
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import ASKS, nuisances_of
 from analysis.engine.followed import Followed
@@ -16,17 +19,7 @@ from analysis.engine.look import look
 from analysis.engine.places import is_placed, placed_again
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    Shape,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 TIMES_S = np.arange(0.0, 1.0, 0.005)
 NOISE = 0.1

@@ -6,19 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.released import released
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 
 TIMES_S = np.arange(0.0, 2.0, 0.005)
 NOISE, SIGMA = 0.05, 0.01

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from analysis.engine import ring_fit
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import one_more
 from analysis.engine.followed import Followed, Lent
@@ -19,17 +22,7 @@ from analysis.engine.ring_fit import FAINT, follow_ring
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import Number, State
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    Shape,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 from analysis.engine.way import Way
 
 TONE_HZ, SIGMA = 5.0, 0.01

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from analysis.engine import diagnose
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.evidence import Problem, Weighed
 from analysis.engine.faint import _labels
 from analysis.engine.finder import Promised, worth_fitting
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.screen import Scored, Screen
-from analysis.engine.system import Array, Candidate, Term
 from tests.analysis.engine.test_by_ring import Tuned
 from tests.analysis.engine.test_ring_fit import SIGMA, ring
 

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Term, diagnose
+from analysis.engine.array import Array
 from analysis.engine.faint import faint
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.sharper import Sharper, Told, how_sharp
-from analysis.engine.system import Array, Prediction
+from analysis.engine.system import Prediction
 from tests.analysis.engine.test_ring_fit import T_S, TONE_HZ
 
 CELLS, NOISE = 8, 0.05

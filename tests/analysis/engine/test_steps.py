@@ -6,9 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
-from analysis.engine.system import Array, Bundle, Candidate, Nuisance, Point, Prediction, Segment
+from analysis.engine.system import Nuisance, Point, Prediction
 from analysis.engine.way import WORTH_A_STEP
 
 T_S = np.arange(0.0, 10.0, 0.01)

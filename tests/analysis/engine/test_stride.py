@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from analysis.engine import diagnose
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.fitted import Fitted
@@ -17,7 +19,7 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.stride import strides_of
 from analysis.engine.stride_search import stride_guesses
-from analysis.engine.system import Array, Candidate, Nuisance, Point, Prediction, Term
+from analysis.engine.system import Nuisance, Point, Prediction
 from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, STEP, T_S, LetGo, ring
 
 TURNS = Candidate(

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.engine.system import Array, Bundle, Segment
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.unlikely import rounded, unlikely
 
 T_S = np.arange(0.0, 10.0, 0.05)

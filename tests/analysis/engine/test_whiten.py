@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.system import Array, Bundle
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle
 from analysis.engine.whiten import Whiten, covariance_over, noise_leaves, sigmas_of
 
 NOISE, INSTANT_S, TONE_HZ = 0.01, 5e-4, 20.0

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from analysis.engine.all_samples import cost_of
+from analysis.engine.array import Array
+from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.candidate import Candidate, Shape, Term
 from analysis.engine.faint import faint
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
@@ -15,17 +18,7 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import (
-    Array,
-    Bundle,
-    Candidate,
-    Nuisance,
-    Point,
-    Prediction,
-    Segment,
-    Shape,
-    Term,
-)
+from analysis.engine.system import Nuisance, Point, Prediction
 from analysis.engine.whole import whole_beside, whole_guesses, whole_onward
 
 T_S = np.arange(0.0, 10.0, 0.01)
