@@ -221,7 +221,7 @@ def _worth_asking(
     for one in strides:
         change = np.zeros(nuisances.shape[1])
         for k, term in enumerate(one.candidate.terms):
-            change += one.size * term.step * does[one.candidate.name, 0, k]
+            change += one.size * term.step * does[one.candidate.name, one.look, k]
         back = nuisances @ change
         seen = float(change @ change - back @ np.linalg.solve(inside, back))
         if SEEN < seen < LOST:

@@ -48,7 +48,7 @@ def faint_search(
         Single ones, the best first; and the best of all, the null among them.
     """
     chosen = {name: one for name, one in candidates.items() if not one.fixed}
-    screen = Screen(found.problem, chosen, found.terms)
+    screen = Screen(found.problem, chosen, found.terms, moved=False)
     null = screen.null()
     singles = singles_of(screen, chosen)
     pairs: dict[tuple[str, ...], Scored] = {}
@@ -228,6 +228,7 @@ def _beside(found: Faint, parent: Scored, candidates: Mapping[str, Candidate]) -
         done={name: does},
         own={name: own},
         state=state,
+        moved=False,
     )
 
 

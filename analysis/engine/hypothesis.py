@@ -70,20 +70,39 @@ class Hypothesis:
             for name in self.names
         )
 
-    def log_prior(self, candidates: Mapping[str, Candidate]) -> float:
-        """Prior odds, the choice of terms and what their free numbers cost."""
+    def log_prior(self, candidates: Mapping[str, Candidate], *, moved: bool = True) -> float:
+        """Prior odds, the choice of terms and what their free numbers cost.
+
+        Parameters
+        ----------
+        candidates, moved
+            As for `part_log_prior`.
+        """
         families = [candidates[name].family for name in self.parts if candidates[name].family]
         doubled = len(families) - len(set(families))
-        whole = sum(part_log_prior(candidates[name], one) for name, one in self.parts.items())
+        parts = self.parts.items()
+        whole = sum(part_log_prior(candidates[name], one, moved=moved) for name, one in parts)
         return whole - LOG_COST_FAMILY * doubled
 
 
-def part_log_prior(candidate: Candidate, part: Part) -> float:
-    """What one candidate, with these terms, costs."""
+def part_log_prior(candidate: Candidate, part: Part, *, moved: bool = True) -> float:
+    """What one candidate, with these terms, costs.
+
+    Parameters
+    ----------
+    candidate, part
+        It, and what of it is on.
+    moved
+        Whether its shapes are moved to where they fit best. Where they are only looked at, the best
+        of so many looks costs as much as that is a choice; what no look tells from another is as
+        likely whatever its shapes are.
+    """
     total = LOG_ODDS + log(candidate.prior)
     if not candidate.together and len(candidate.terms) > 1:
         total -= _log_choices(candidate, part)
     free = 0 if candidate.fixed else len(part.groups(candidate))
+    if not moved:
+        return total - LOG_COST * free - log(len(candidate.variants()))
     shapes = sum(not shape.whole for shape in candidate.shapes_of(part.terms))
     tried = 1
     for shape in candidate.shapes:

@@ -142,10 +142,7 @@ def judge(
         hardly = [hardly_explains(one, null) for one in fitted]
         scores[np.logical_or(idle, hardly)] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
-    for i, one in enumerate(fitted):
-        if moved and len(one.hypothesis.names) == 1 and one.hypothesis.names[0] in moved:
-            rise = rise_of(moved[one.hypothesis.names[0]], TEMPER_EXACT)
-            scores[i] = max(scores[i], nothing + rise)
+    scores = _moved(scores, fitted, moved or {}, nothing)
     weights = weights_of(scores, fitted, candidates, nothing, noise, settled=settled)
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
@@ -186,6 +183,27 @@ def judge(
     return Judgement(
         verdict, causes, chosen, tuple(float(w) for w in weights), doubt, shown=bool(shown)
     )
+
+
+def _moved(
+    scores: Array, fitted: Sequence[Fitted], moved: Mapping[str, float], nothing: float
+) -> Array:
+    """Scores, numbers that nothing has moved too far as likely as that says.
+
+    As likely as that something is there is not that it is this: other causes that keep the number
+    where it is known to be are as far behind it, or ahead, as they were.
+    """
+    names = [one.hypothesis.names for one in fitted]
+    far = {i: moved[one[0]] for i, one in enumerate(names) if len(one) == 1 and one[0] in moved}
+    raised = {i: nothing + rise_of(sigmas, TEMPER_EXACT) for i, sigmas in far.items()}
+    found = scores.copy()
+    for i, score in raised.items():
+        found[i] = max(scores[i], score)
+    if far:
+        first = max(far, key=lambda i: found[i])
+        others = [i for i, one in enumerate(names) if one and i not in far]
+        found[others] += found[first] - scores[first]
+    return found
 
 
 def doubt_of(

@@ -79,7 +79,7 @@ def _size(candidate: Candidate, looks: Sequence[Array], group: tuple[str, ...]) 
 
     What one unit of each tells beside parameters, squared, in sigmas: a matrix for each look.
     """
-    cost = -part_log_prior(candidate, Part(group, len(group) > 1))
+    cost = -part_log_prior(candidate, Part(group, len(group) > 1), moved=False)
     temper = TEMPER_EXACT if candidate.form_share < EXACT else TEMPER
     sigmas = float(np.sqrt(2.0 * (cost - LOG_ODDS * (temper - 1.0))))
     pick = [k for k, one in enumerate(candidate.terms) if one.name in group]

@@ -31,6 +31,13 @@ from analysis.engine.whole import whole_guesses
 WORTH_FOLLOWING = 8.0
 """What is faint, and in straight lines this far before nothing, is led to the phase as well."""
 
+FROM_AFAR = 8.0
+"""And so is what is likelier by so much, as it usually is, than straight lines say; what is so by
+less counts as that, where it is no farther behind nothing than"""
+
+NOT_YET_OUT = 6.0
+"""this."""
+
 MUCH = 0.5
 """Where no cause promises to explain this share of what parameters leave beyond noise, those may
 have come to a hollow beside their valley: they are led once more from elsewhere."""
@@ -49,7 +56,7 @@ class NearNoise:
     screened, faintly
         Single causes to first order, and hypotheses, as `faint_search` has them.
     afar
-        Causes that are likelier as they usually are.
+        Causes that are far likelier as they usually are.
     """
 
     nothing: Followed
@@ -122,8 +129,28 @@ def near_noise(
         nothing = other
         about = faint(system, nothing, system.candidates, progress, strides=strides)
         screened, faintly = faint_search(about, refiner, candidates)
-    afar = stride_guesses(about, candidates, faintly)
+    whole = stride_guesses(about, candidates, faintly)
+    told = {one.hypothesis.names: one.log_score for one in faintly}
+    alone = told[()]
+    afar = [
+        one for one in whole if one.log_score > told.get(one.hypothesis.names, alone) + FROM_AFAR
+    ]
+    faintly = _as_usual(refiner, nothing, faintly, [one for one in whole if one not in afar])
     return NearNoise(nothing, about, screened, faintly, afar)
+
+
+def _as_usual(
+    refiner: Refiner, nothing: Followed, faintly: Sequence[Fitted], usual: Sequence[Guess]
+) -> list[Fitted]:
+    """Hypotheses, those of causes as they usually are in the place of straight lines."""
+    alone = next(one.log_score for one in faintly if not one.hypothesis.parts)
+    found = {one.hypothesis.names: one for one in faintly}
+    for one in usual:
+        if one.log_score > alone - NOT_YET_OUT:
+            there = refiner.standing(one.state, one.nuisance)
+            there = replace(there, log_score=one.log_score, left=nothing.left)
+            found[one.hypothesis.names] = there
+    return sorted(found.values(), key=lambda one: -one.log_score)
 
 
 def sharper_than_stated(refiner: Refiner, about: Faint) -> tuple[System, Start] | None:

@@ -68,6 +68,8 @@ class Screen:
         Candidate -> what it does, shape (f,), and columns of its free numbers, shapes among them.
     state
         Those numbers.
+    moved
+        As for `part_log_prior`: where nothing found is led on, shapes are only looked at.
     """
 
     def __init__(
@@ -79,6 +81,8 @@ class Screen:
         done: Mapping[str, Array] | None = None,
         own: Mapping[str, Array] | None = None,
         state: "State | None" = None,
+        *,
+        moved: bool = True,
     ) -> None:
         self.problem = problem
         self.candidates = candidates
@@ -87,6 +91,7 @@ class Screen:
         self._done = dict(done or {})
         self._own = dict(own or {})
         self._state = state
+        self._moved = moved
         self._frames: dict[float, Frame] = {}
 
     def null(self) -> Scored:
@@ -106,7 +111,8 @@ class Screen:
         for v, shapes in self._looks(candidate):
             for terms, shared, gain in self._choices(candidate, self.terms[name, v]):
                 part = Part(terms, shared, shapes)
-                found.append((0.5 * gain + part_log_prior(candidate, part), v, terms, shared))
+                prior = part_log_prior(candidate, part, moved=self._moved)
+                found.append((0.5 * gain + prior, v, terms, shared))
         # The quick score has the variance of what is on only; the best few are weighed in full.
         found.sort(key=lambda one: -one[0])
         seen = set()
@@ -278,7 +284,7 @@ class Screen:
                 value = magnitude(self.candidates[name], group, float(weighed.estimate[at]))
                 values |= {(name, term): value for term in group}
                 at += 1
-        score = weighed.log_evidence + hypothesis.log_prior(self.candidates)
+        score = weighed.log_evidence + hypothesis.log_prior(self.candidates, moved=self._moved)
         return Scored(hypothesis, score, weighed, values, variants)
 
 

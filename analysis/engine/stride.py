@@ -21,6 +21,9 @@ SIZES = (1.0, 0.2)
 FEW = 2
 """Of more numbers there is no usual size together."""
 
+LOOKS = 2
+"""With so many of its shapes."""
+
 SEEN, LOST = 16.0, 1e4
 """By how much straight lines say that it changes the samples, squared, that parameters do not take
 back: by less, and there is nothing to see; by more, and it is not hidden in parameters."""
@@ -41,6 +44,11 @@ class Stride:
     candidate: Candidate
     part: Part
     size: float
+
+    @property
+    def look(self) -> int:
+        """Which variant of its shapes."""
+        return list(self.candidate.variants()).index(dict(self.part.shapes))
 
     def state(self, times: float, candidates: Mapping[str, Candidate]) -> State:
         """So many times that much of it, within what is plausible."""
@@ -74,6 +82,9 @@ def strides_of(
         several = len(one.groups(terms, one.spreads)) > FEW
         known = any((one.name, term) in same for term in terms)
         if not (one.fixed or one.together or several or known):
-            part = Part(terms, one.spreads, one.variants()[0])
-            found += [Stride(one, part, size) for size in SIZES]
+            found += [
+                Stride(one, Part(terms, one.spreads, shapes), size)
+                for shapes in one.variants()[:LOOKS]
+                for size in SIZES
+            ]
     return tuple(found)

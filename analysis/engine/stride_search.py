@@ -1,6 +1,7 @@
 """Which causes explain more as they usually are than straight lines about the ring promise."""
 
 from collections.abc import Mapping, Sequence
+from math import log
 
 import numpy as np
 
@@ -11,18 +12,18 @@ from analysis.engine.faint_search import nuisances_by
 from analysis.engine.fitted import Fitted
 from analysis.engine.guess import Guess
 from analysis.engine.screen import LOOSE_FORM
+from analysis.engine.stride import SIZES
 
 LEAST, MOST = 0.5, 2.0
 """So many times as much of it may be told from there."""
-
-MORE = 8.0
-"""By so much more than by straight lines, as a logarithm, it must be likely."""
 
 
 def stride_guesses(
     found: Faint, candidates: Mapping[str, Candidate], faintly: Sequence[Fitted]
 ) -> list[Guess]:
     """Causes that are likelier as they usually are than straight lines say, the best first.
+
+    By how much decides what becomes of them: see `NearNoise`.
 
     Parameters
     ----------
@@ -47,8 +48,9 @@ def stride_guesses(
             rounds=2,
         )
         state = stride.state(float(weighed.estimate[0]), candidates)
-        score = weighed.log_evidence + state.hypothesis.log_prior(candidates)
-        before = guesses[name].log_score if name in guesses else told.get((name,), told[()]) + MORE
+        prior = state.hypothesis.log_prior(candidates, moved=False)
+        score = weighed.log_evidence + prior - log(len(SIZES))
+        before = guesses[name].log_score if name in guesses else told.get((name,), -np.inf)
         if score > before:
             guesses[name] = Guess(state, nuisances_by(found, weighed), score)
     return sorted(guesses.values(), key=lambda one: -one.log_score)
