@@ -107,7 +107,7 @@ class FollowedSearch(ToldLeader):
             tells = tells or (seen and self._leads_bent() and self._one_more())
             # Of a single recording lines are asked before the ring is asked for more.
             if not tells and (seen or self._enough is not None):
-                self._lead_next(others, self._is_farther)
+                self._lead_next(others, self._is_farther, told=seen)
             if not (tells or self._is_farther(self._best)):
                 return
         least = max((one.log_score for one in hypotheses), default=0.0) - FAR_BEHIND
@@ -121,7 +121,9 @@ class FollowedSearch(ToldLeader):
             self._lead_alike(others)
         self._lead_beside()
 
-    def _lead_next(self, others: Sequence[Guess], until: Callable[[Followed], bool]) -> None:
+    def _lead_next(
+        self, others: Sequence[Guess], until: Callable[[Followed], bool], *, told: bool = False
+    ) -> None:
         """The next guesses, of other kinds than what was led, until the best is of use.
 
         Parameters
@@ -130,6 +132,8 @@ class FollowedSearch(ToldLeader):
             Single causes, the most promising first.
         until
             Whether the best is of use.
+        told
+            Lines told them.
         """
         kinds = set().union(*(self._kinds(one.names) for one in self._led))
         left = GUESSES
@@ -140,7 +144,10 @@ class FollowedSearch(ToldLeader):
             if not kind & kinds:
                 kinds |= kind
                 left -= 1
-                self._lead(one.nuisance, one.state, near=False)
+                if told:
+                    self._lead_told([one])
+                else:
+                    self._lead(one.nuisance, one.state, near=False)
 
     def _leads_bent(self) -> bool:
         """Whether the best leads over more than parameters alone, but bends them, and loses it.
