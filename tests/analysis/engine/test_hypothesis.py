@@ -4,8 +4,8 @@ from math import exp, log
 
 import pytest
 
-from analysis.engine.candidate import Candidate, Term
-from analysis.engine.hypothesis import Part, part_log_prior
+from analysis.engine.candidate import Candidate, Shape, Term
+from analysis.engine.hypothesis import LOG_COST_SHAPE, Part, part_log_prior
 
 PLACES = "12345678"
 TERMS = tuple(Term(f"size@{p}", "size", "N", p, 0.0, 5.0, 0.3) for p in PLACES)
@@ -44,3 +44,16 @@ def test_any_other_choice_shares_the_rest() -> None:
     known = law(PLACES, "1234", "5678")
     assert log(chosen(known, "3")) == pytest.approx(-log(2 * 8 * 8))
     assert log(chosen(known, "37")) == pytest.approx(-log(2 * 8 * 28))
+
+
+def test_shapes_that_are_only_looked_at_cost_the_choice_of_a_look() -> None:
+    size = Term("size", "size", "V", "", 0.0, 1.0, 0.1)
+    slow = Shape("slow_s", "s", 1.0, 0.1, 10.0, grid=(0.3, 3.0))
+    bend = Shape("bend", "1", 0.5, 0.0, 1.0)
+    plain = Candidate("law", "law", "plant", (size,))
+    shaped = Candidate("law", "law", "plant", (size,), (slow, bend))
+    part = Part(("size",), shapes={"slow_s": 0.3, "bend": 0.5})
+    without = part_log_prior(plain, Part(("size",)), moved=False)
+    assert without == part_log_prior(plain, Part(("size",))), "there is no shape"
+    assert part_log_prior(shaped, part, moved=False) == pytest.approx(without - log(2.0))
+    assert part_log_prior(shaped, part) == pytest.approx(without - 2.0 * LOG_COST_SHAPE)

@@ -183,3 +183,18 @@ def test_what_a_law_leaves_for_its_form_is_no_second_cause(
     ]
     weights = weights_of(scores, of_form, CANDIDATES, scores[2], NOISE, settled=True)
     assert (weights[0] > SECOND) == second
+
+
+def test_a_number_that_moved_far_raises_what_keeps_it_where_it_is_known_to_be(
+    refiner: Refiner,
+) -> None:
+    weighed = [
+        fitted(refiner, state_of(DAMPING, 0.2), -101.0, 1.0),
+        fitted(refiner, state_of(STEP, 1.0, moment=4.0), -101.2, 1.0),
+        fitted(refiner, None, -100.0, 1.0),
+    ]
+    assert judge(weighed, CANDIDATES).verdict == "none"
+    damping, step, nothing = judge(weighed, CANDIDATES, moved={"damping": 4.0}).probability
+    assert damping > nothing, "it moved by four sigmas"
+    assert damping > step > nothing
+    assert np.log(damping / step) < 0.2 + 1e-6, "no farther apart than evidence has them"
