@@ -202,7 +202,8 @@ def _moved(
     if far:
         first = max(far, key=lambda i: found[i])
         others = [i for i, one in enumerate(names) if one and i not in far]
-        found[others] += found[first] - scores[first]
+        # What is so small that it is none has no evidence of its own.
+        found[others] += found[first] - (scores[first] if np.isfinite(scores[first]) else nothing)
     return found
 
 

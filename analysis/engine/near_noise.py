@@ -130,27 +130,28 @@ def near_noise(
         about = faint(system, nothing, system.candidates, progress, strides=strides)
         screened, faintly = faint_search(about, refiner, candidates)
     whole = stride_guesses(about, candidates, faintly)
-    told = {one.hypothesis.names: one.log_score for one in faintly}
-    alone = told[()]
-    afar = [
-        one for one in whole if one.log_score > told.get(one.hypothesis.names, alone) + FROM_AFAR
-    ]
-    faintly = _as_usual(refiner, nothing, faintly, [one for one in whole if one not in afar])
+    faintly, afar = _as_usual(refiner, nothing, faintly, whole)
     return NearNoise(nothing, about, screened, faintly, afar)
 
 
 def _as_usual(
-    refiner: Refiner, nothing: Followed, faintly: Sequence[Fitted], usual: Sequence[Guess]
-) -> list[Fitted]:
-    """Hypotheses, those of causes as they usually are in the place of straight lines."""
-    alone = next(one.log_score for one in faintly if not one.hypothesis.parts)
+    refiner: Refiner, nothing: Followed, faintly: Sequence[Fitted], whole: Sequence[Guess]
+) -> tuple[list[Fitted], list[Guess]]:
+    """Hypotheses, causes as they usually are in the place of straight lines; and far likelier ones.
+
+    The latter are to be led, and stand as straight lines have them until then.
+    """
     found = {one.hypothesis.names: one for one in faintly}
-    for one in usual:
-        if one.log_score > alone - NOT_YET_OUT:
+    told = {names: one.log_score for names, one in found.items()}
+    alone, afar = told[()], []
+    for one in whole:
+        names = one.hypothesis.names
+        if one.log_score > told.get(names, alone) + FROM_AFAR:
+            afar.append(one)
+        elif one.log_score > alone - NOT_YET_OUT:
             there = refiner.standing(one.state, one.nuisance)
-            there = replace(there, log_score=one.log_score, left=nothing.left)
-            found[one.hypothesis.names] = there
-    return sorted(found.values(), key=lambda one: -one.log_score)
+            found[names] = replace(there, log_score=one.log_score, left=nothing.left)
+    return sorted(found.values(), key=lambda one: -one.log_score), afar
 
 
 def sharper_than_stated(refiner: Refiner, about: Faint) -> tuple[System, Start] | None:

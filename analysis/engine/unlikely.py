@@ -85,6 +85,8 @@ def rounded(bundles: Sequence[Bundle], simulated: Sequence[Prediction]) -> tuple
     found = []
     for i, bundle in enumerate(bundles):
         inside = looked_at(bundle)
+        if int(inside.sum()) < LEAST_SAMPLES:
+            continue
         sigmas = np.median(sigmas_of(bundle)[inside], axis=0)
         for k, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
             step = min(_rounded_to(one[i][inside, k]) for one in simulated)
@@ -99,9 +101,9 @@ def rounded(bundles: Sequence[Bundle], simulated: Sequence[Prediction]) -> tuple
 
 def _rounded_to(values: Array) -> float:
     """The step of a decimal place to which all of it is rounded; 0: none."""
-    if np.ptp(values) == 0.0:
-        return 0.0
     for places in DECIMALS:
-        if np.allclose(values, np.round(values, places), rtol=1e-14, atol=10.0**-places * 1e-6):
-            return float(10.0**-places)
+        there, step = np.round(values, places), 10.0**-places
+        # What is far smaller than a step rounds to nothing, and was not rounded to it.
+        if np.ptp(there) > 0.0 and np.allclose(values, there, rtol=1e-14, atol=step * 1e-6):
+            return float(step)
     return 0.0

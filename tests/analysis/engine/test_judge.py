@@ -198,3 +198,16 @@ def test_a_number_that_moved_far_raises_what_keeps_it_where_it_is_known_to_be(
     assert damping > nothing, "it moved by four sigmas"
     assert damping > step > nothing
     assert np.log(damping / step) < 0.2 + 1e-6, "no farther apart than evidence has them"
+
+
+def test_a_number_that_moved_far_and_is_told_as_next_to_nothing_raises_nothing_beyond_bounds(
+    refiner: Refiner,
+) -> None:
+    weighed = [
+        fitted(refiner, state_of(DAMPING, 0.01 * NEGLIGIBLE), -101.0, 1.0),
+        fitted(refiner, state_of(STEP, 1.0, moment=4.0), -108.0, 1.0),
+        fitted(refiner, None, -100.0, 1.0),
+    ]
+    said = judge(weighed, CANDIDATES, moved={"damping": 4.0})
+    assert np.isfinite(said.probability).all()
+    assert [one.name for one in said.causes] == ["damping"]

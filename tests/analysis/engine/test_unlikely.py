@@ -61,3 +61,16 @@ def told_of_rounding(places: int) -> tuple[str, ...]:
     # One of them is round by its nature.
     points = [T_S, 1.03 * T_S + 0.2 * MOTION]
     return rounded((bundle,), [[np.round(one, places)[:, None]] for one in points])
+
+
+def test_what_is_far_smaller_than_a_step_was_not_rounded_to_it() -> None:
+    covariance = np.array([[1e-14]])
+    bundle = Bundle(("x",), ("m",), T_S, 1e-5 * MOTION[:, None], covariance, (Segment(0.0, 10.0),))
+    assert rounded((bundle,), [[1e-5 * MOTION[:, None]]]) == ()
+
+
+def test_a_bundle_that_is_not_looked_at_says_nothing() -> None:
+    covariance = np.array([[NOISE**2]])
+    bundle = Bundle(("x",), ("V",), T_S, np.zeros((len(T_S), 1)), covariance, ())
+    assert unlikely((bundle,), [MOTION[:, None]]) == ()
+    assert rounded((bundle,), [[MOTION[:, None]]]) == ()
