@@ -144,12 +144,17 @@ def _fast(module: ModuleType) -> dict[str, Any]:
 
 @cache
 def _compile_laws() -> None:
-    """Let the kernel call every function of its modules but those that Python calls."""
+    """Let the kernel call every function of its modules but those that Python calls.
+
+    Laws of effects become part of what calls them: a loop over lanes that calls is none of vectors.
+    """
     from numba.extending import register_jitable
+
+    from model.library.discovery import effect_modules
 
     for module in _kernel_modules():
         for law in vars(module).values():
             # Each where it is defined, once: modules also hold what they import from each other.
             if isfunction(law) and law.__module__ == module.__name__ and law.__name__ not in CALLED:
-                inline = {"forceinline": True} if law.__name__ in INLINE else {}
+                inline = {"forceinline": law.__name__ in INLINE or module in effect_modules()}
                 register_jitable(error_model="numpy", **UNCOUNTED, **_fast(module), **inline)(law)

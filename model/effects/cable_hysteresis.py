@@ -6,14 +6,16 @@ beginning whenever it turns back (Bouc and Wen).
 
 from typing import Any
 
+import numpy as np
+
 from model.library.effect import Acts, Effect, Parameter, State
-from model.library.smooth import smooth_sign, smooth_size
+from model.library.smooth import smooth_size
 
 ROUNDING_M_PER_S = 1e-4
 """Width over which |Delta L'| is rounded at reversal."""
 
-ROUNDING = 1e-3
-"""Width over which sgn z is rounded, as a share of the yield elongation."""
+TINY_M = 1e-30
+"""Keeps 0 / 0 at 0: there is no sign of nothing, and nothing slips then."""
 
 YIELDS = (1 / 6, 3 / 6, 5 / 6, 7 / 6, 9 / 6, 11 / 6)
 """Yield elongations of each sixth of the strands, over their average: evenly between 0 and twice
@@ -42,24 +44,20 @@ def pull(
 
 def _held(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
     """Give z' = x' - (|x'| sgn z + x') p/(1 + p), p = (z/y)^8: all of x' at first, none at y."""
-    speed = smooth_size(elongation_rate, ROUNDING_M_PER_S)
+    speed, size = smooth_size(elongation_rate, ROUNDING_M_PER_S), np.abs(fibre) + TINY_M
     square = fibre * fibre
     fourth = square * square
     level = yield_m * yield_m
     level = level * level
-    slips = fourth * fourth / (fourth * fourth + level * level)
-    return elongation_rate - slips * (
-        speed * smooth_sign(fibre, ROUNDING * yield_m) + elongation_rate
-    )
+    slips = fourth * fourth / ((fourth * fourth + level * level) * size)
+    return elongation_rate - slips * (speed * fibre + size * elongation_rate)
 
 
 def _softening(yield_m: Any, bend: Any, held: Any, elongation_rate: Any) -> Any:
     """Give z' = x' - (|x'| sgn z + x') q/2, q = (1 - b) r + b r^2, r = |z|/y: n = 1 to 2."""
-    speed = smooth_size(elongation_rate, ROUNDING_M_PER_S)
-    side = smooth_sign(held, ROUNDING * yield_m)
-    filled = held * side / yield_m
-    slips = filled * (1.0 + bend * (filled - 1.0))
-    return elongation_rate - 0.5 * slips * (speed * side + elongation_rate)
+    speed, size = smooth_size(elongation_rate, ROUNDING_M_PER_S), np.abs(held)
+    slips = (1.0 + bend * (size / yield_m - 1.0)) / yield_m
+    return elongation_rate - 0.5 * slips * (speed * held + size * elongation_rate)
 
 
 def rates(

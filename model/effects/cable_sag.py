@@ -31,11 +31,19 @@ def pull(
     across = weight * weight * (1.0 - direction_z * direction_z)
     sag = stiffness * across * length / 24.0
     free = elastic - sag / (pretension * pretension)
-    # Above the root: where T = a + (k s T^2)^(1/3), the left side is the larger.
-    tension = 0.5 * (free + np.abs(free)) + sag ** (1.0 / 3.0) + TINY
+    # Above the root, or so near below it that the first step leads there: where T = a + (k s
+    # T^2)^(1/3), the left side is the larger.
+    tension = 0.5 * (free + np.abs(free)) + _about_cube_root(sag) + TINY
     for _ in range(STEPS):
         tension -= (tension * (tension - free) - sag / tension) / (3.0 * tension - 2.0 * free)
     return tension - elastic
+
+
+def _about_cube_root(value: Any) -> Any:
+    """value^(1/4 + 1/16 + 1/64), without the C library: within a tenth from 1e-9 to 1e9."""
+    fourth = np.sqrt(np.sqrt(value))
+    sixteenth = np.sqrt(np.sqrt(fourth))
+    return fourth * sixteenth * np.sqrt(np.sqrt(sixteenth))
 
 
 EFFECT = Effect(

@@ -179,7 +179,13 @@ def _scalar_wrench() -> list[str]:
 
 
 # The lane kernel: `own` and `q` hold numbers, `y` states, `f` their rates, `work` the rest. A part
-# of `y` that starts at 0 spares the vector loops a gather.
+# of `y` that starts at 0 spares the vector loops a gather. All states of a law are in one part, a
+# fixed way apart: of a part for each the compiler cannot tell that none overlaps, and leaves the
+# loop as it is. How many lanes there are is read from `work`: a short loop of a known length is
+# rolled out before it is made one of vectors, and then is none.
+
+_EACH_LANE = "        for w in range(lanes):"
+_COUNT_LANES = f"    lanes = work.size // {WORK['end']}"
 
 
 def _lane_find(effect: Effect, *, pulling: bool = False) -> Find:
@@ -190,7 +196,7 @@ def _lane_find(effect: Effect, *, pulling: bool = False) -> Find:
     def find(name: str) -> str:
         own = _own(effect, name)
         if own is not None and own[0] == "state":
-            return f"s{own[1]}[w]"
+            return _lane_state(effect, "s", own[1])
         if own is not None:
             return f"{numbers}[{(CABLE['values'] + own[1]) * LANES} + w]"
         if of_platform and name in coordinates:
@@ -213,27 +219,33 @@ def _work_slot(name: str) -> int:
     return WORK[vector] + "xyz".index(axis)
 
 
+def _lane_state(effect: Effect, of: str, which: int) -> str:
+    """A state, or its rate: that of the cable, or of the one that carries it for several."""
+    shared = "_shared" if effect.states[which].shared else ""
+    return f"{of}{shared}[{which * CABLES * LANES} + w]"
+
+
 def _lane_states(effect: Effect, number: int, rates: bool) -> list[str]:
     lines = []
-    for which, state in enumerate(effect.states):
-        cable = "carrier[i]" if state.shared else "i"
-        first = f"(offset[{number}] + {which * CABLES} + {cable}) * {LANES}"
-        lines.append(f"        at = {first}")
-        lines.append(f"        s{which} = y[at : at + {LANES}]")
+    span = ((len(effect.states) - 1) * CABLES + 1) * LANES
+    for shared in sorted({state.shared for state in effect.states}):
+        cable, name = ("carrier[i]", "_shared") if shared else ("i", "")
+        lines.append(f"        at = (offset[{number}] + {cable}) * {LANES}")
+        lines.append(f"        s{name} = y[at : at + {span}]")
         if rates:
-            lines.append(f"        d{which} = f[at : at + {LANES}]")
+            lines.append(f"        d{name} = f[at : at + {span}]")
     return lines
 
 
 def _lane_pull() -> list[str]:
     pull, behind = WORK["pull"] * LANES, WORK["behind"] * LANES
-    lines = ["def lane_pull(i, on, offset, carrier, own, y, work):"]
+    lines = ["def lane_pull(i, on, offset, carrier, own, y, work):", _COUNT_LANES]
     for number, effect in _cable_effects():
         if effect.pull is None:
             continue
         find = _lane_find(effect, pulling=True)
         lines += [_switch(number), *_lane_states(effect, number, False)]
-        lines.append(f"        for w in range({LANES}):")
+        lines.append(_EACH_LANE)
         lines.append(f"            added = {_call(effect, 'pull', find)}")
         lines.append(f"            work[{pull} + w] += added")
         if effect.behind is not None:
@@ -244,23 +256,23 @@ def _lane_pull() -> list[str]:
 
 
 def _lane_rates() -> list[str]:
-    lines = ["def lane_rates(i, on, offset, carrier, own, y, work, f):"]
+    lines = ["def lane_rates(i, on, offset, carrier, own, y, work, f):", _COUNT_LANES]
     for number, effect in _cable_effects():
         if not _has_rates(effect):
             continue
         find = _lane_find(effect)
         lines += [_switch(number), *_lane_states(effect, number, True)]
         if effect.transverse is not None:
-            for k in range(2):
-                lines.append(f"        at = ({12 + k * CABLES} + i) * {LANES}")
-                lines.append(f"        m{k} = f[at : at + {LANES}]")
-        lines.append(f"        for w in range({LANES}):")
-        if effect.transverse is not None:
+            lines.append(f"        at = (12 + i) * {LANES}")
+            lines.append(f"        m = f[at : at + {(CABLES + 1) * LANES}]")
+            lines.append(_EACH_LANE)
             lines.append(f"            r0, r1 = {_call(effect, 'transverse', find)}")
-            lines += [f"            m{k}[w] += r{k}" for k in range(2)]
+            lines += [f"            m[{k * CABLES * LANES} + w] += r{k}" for k in range(2)]
         if effect.rates is not None:
+            lines.append(_EACH_LANE)
             lines.append(f"            {_received(effect)} = {_call(effect, 'rates', find)}")
-            lines += [f"            d{k}[w] += r{k}" for k in range(len(effect.states))]
+            for which in range(len(effect.states)):
+                lines.append(f"            {_lane_state(effect, 'd', which)} += r{which}")
         if effect.across is not None:
             lines += _lane_across(effect, find)
     return [*lines, "    return"]
@@ -270,7 +282,7 @@ def _lane_across(effect: Effect, find: Find) -> list[str]:
     force, moment = WORK["force"], WORK["moment"]
     arm = [f"work[{(WORK['arm'] + k) * LANES} + w]" for k in range(3)]
     lines = [
-        f"        for w in range({LANES}):",
+        _EACH_LANE,
         f"            a0, a1, a2 = {_call(effect, 'across', find)}",
     ]
     lines += [f"            work[{(force + k) * LANES} + w] += a{k}" for k in range(3)]
@@ -282,11 +294,11 @@ def _lane_across(effect: Effect, find: Find) -> list[str]:
 
 
 def _lane_wrench() -> list[str]:
-    lines = ["def lane_wrench(on, q, y, work):"]
+    lines = ["def lane_wrench(on, q, y, work):", _COUNT_LANES]
     for number, effect in _platform_effects():
         find = _lane_find(effect)
         lines.append(_switch(number))
-        lines.append(f"        for w in range({LANES}):")
+        lines.append(_EACH_LANE)
         lines.append(f"            a0, a1, a2, a3, a4, a5 = {_call(effect, 'wrench', find)}")
         for k in range(6):
             slot = (WORK["force"] + k) * LANES
