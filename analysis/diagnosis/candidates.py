@@ -166,11 +166,24 @@ FAMILIES = (
     | dict.fromkeys(STIFFENINGS, STIFFER)
 )
 
-WHOLE = ("left_at_rest", "reads_up", "drive_pushes", "disturbed_late_share", "held_share")
+AKIN = {
+    "cable_hysteresis": ("pulley_presliding",),
+    "pulley_presliding": ("cable_hysteresis",),
+}
+"""Laws of other things that may do nearly the same: what gives before it slips loses as a loop
+does, in a cable or at its pulley."""
+
+WHOLE = (
+    "left_at_rest",
+    "reads_up",
+    "drive_pushes",
+    "disturbed_late_share",
+    "held_share",
+    "bouc_wen_share",
+)
 """Shapes that are one thing or another."""
 
 BETWEEN = (
-    "bouc_wen_share",
     "bend",
     "counted_share",
     "drive_stays_share",
@@ -270,6 +283,7 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
         together=policy.together,
         shareable=len(magnitudes) == 1 or effect.name == "geometry",
         combinations=wholes,
+        akin=AKIN.get(effect.name, ()),
         chosen_terms=12 if effect.name == "geometry" else 0,
         family=FAMILIES.get(effect.name, ""),
         grows=effect.name in GROWING,

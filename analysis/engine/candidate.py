@@ -114,6 +114,10 @@ class Candidate:
     shown
         Terms that samples show by themselves, without any simulation: where no simulation can
         follow them, this is there whatever else is.
+    akin
+        Names of laws of other things that may do nearly the same: each is led from where this one
+        has come to, as those of its family are, and both may be there. Names that are not listed
+        count for nothing.
     """
 
     name: str
@@ -132,11 +136,16 @@ class Candidate:
     grows: bool = False
     bends: bool = False
     shown: tuple[str, ...] = ()
+    akin: tuple[str, ...] = ()
 
     @property
     def kind(self) -> str:
         """Of what it is a law: its family's, or its own."""
         return self.family or self.name
+
+    def is_kin(self, other: "Candidate") -> bool:
+        """Whether another law may do as well in its place."""
+        return other.name in self.akin or (self.family != "" and self.family == other.family)
 
     @property
     def spreads(self) -> bool:

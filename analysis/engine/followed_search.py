@@ -282,6 +282,7 @@ class FollowedSearch(ToldLeader):
             if number > 0 and (self._effort > self._most or self._is_kin(one)):
                 continue
             self._lead_guess(one)
+            self._lead_otherwise(one)
         self._is_enough()
 
     def _lead_guess(self, guess: Guess) -> None:
@@ -290,6 +291,13 @@ class FollowedSearch(ToldLeader):
         if self._near:
             start = part_of_the_way(self._samples, self._nothing, start)
         self._lead(start.nuisance, start.state or guess.state, near=self._near)
+
+    def _lead_otherwise(self, guess: Guess) -> None:
+        """What is one thing or another, the other way, where it is the best and leaves much."""
+        if self._near or self._best.names != guess.hypothesis.names or not self.is_poor:
+            return
+        for state in guess.state.otherwise():
+            self._lead(guess.nuisance, state, near=False)
 
     @property
     def farther(self) -> set[tuple[str, ...]]:

@@ -187,7 +187,7 @@ def kin_left(
         (known, name, tuple(sorted({*best.names, name} - {known})))
         for known in best.names
         for name, one in candidates.items()
-        if one.family and one.family == candidates[known].family and name not in best.names
+        if candidates[known].is_kin(one) and name not in best.names
     ]
     tried = {one.names for one in led}
 
