@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from analysis.diagnosis.candidates import FRICTIONS
 from analysis.diagnosis.pictures import Pictures
+from analysis.diagnosis.policies import FRICTIONS
 from analysis.diagnosis.spelling import odds
 
 CAMERA = ("camera_exposure", "frames_dropped")

@@ -3,14 +3,8 @@
 from collections.abc import Sequence
 from math import atan2, hypot
 
-from analysis.diagnosis.candidates import (
-    CABLE_NUMBERS,
-    PAIRS,
-    POLICIES,
-    RUN_CODE,
-    Policy,
-    begun_name,
-)
+from analysis.diagnosis.candidates import CABLE_NUMBERS, PAIRS, RUN_CODE, begun_name
+from analysis.diagnosis.policies import POLICIES, Policy
 from analysis.diagnosis.sighting import Sighting
 from analysis.engine.candidate import Setting
 from model.library.discovery import library

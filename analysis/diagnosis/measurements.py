@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from analysis.diagnosis.candidates import FRICTIONS
+from analysis.diagnosis.policies import FRICTIONS
 from model.library.discovery import library
 
 

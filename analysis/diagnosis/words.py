@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analysis.diagnosis import proposing
-from analysis.diagnosis.candidates import FRICTIONS
 from analysis.diagnosis.guesses import in_words as guesses_in_words
 from analysis.diagnosis.phrases import phrase
+from analysis.diagnosis.policies import FRICTIONS
 from analysis.diagnosis.sides import in_words as which_side
 from analysis.diagnosis.spelling import cables, listed, odds, percent, sentence
 from analysis.diagnosis.titles import parameter_name, short

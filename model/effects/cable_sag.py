@@ -40,7 +40,7 @@ def pull(
 
 
 def _about_cube_root(value: Any) -> Any:
-    """value^(1/4 + 1/16 + 1/64), without the C library: within a tenth from 1e-9 to 1e9."""
+    """value^(1/4 + 1/16 + 1/64), without the C library: within an eighth from 1e-9 to 1e9."""
     fourth = np.sqrt(np.sqrt(value))
     sixteenth = np.sqrt(np.sqrt(fourth))
     return fourth * sixteenth * np.sqrt(np.sqrt(sixteenth))

@@ -4,7 +4,7 @@ from math import exp
 from pathlib import Path
 
 from analysis.diagnosis import nuisances, schema
-from analysis.diagnosis.candidates import LAW, LINEAR, NUMBER
+from analysis.diagnosis.policies import LAW, LINEAR, NUMBER
 from analysis.engine import evidence, hypothesis, judge, locate, weights
 
 TEXT = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text(encoding="utf-8")

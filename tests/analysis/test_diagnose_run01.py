@@ -9,8 +9,8 @@ import pytest
 
 from analysis.compare import compare
 from analysis.diagnose_command import run_diagnosis
-from analysis.diagnosis.candidates import FRICTIONS
 from analysis.diagnosis.figures import write_figures
+from analysis.diagnosis.policies import FRICTIONS
 from analysis.diagnosis.prepare import prepare
 from analysis.diagnosis.results import Result, write
 from analysis.diagnosis.schema import statement_schema

@@ -1,12 +1,11 @@
 """What explains to the noise in some places is asked in all places alike, and its kin there too."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 
-from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Term
+from analysis.engine import Candidate, Point, Term
 from analysis.engine.all_samples import all_samples_say
 from analysis.engine.array import Array
 from analysis.engine.followed import Followed
@@ -17,10 +16,8 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import Prediction
+from tests.analysis.one_ring import T_S, ZERO, OneRing
 
-T_S = np.arange(0.0, 20.0, 0.02)
-NOISE, TONE_HZ = 0.01, 5.0
 PLACES = "1234"
 OFF = {"loss": 0.0, "kindred": 0.008}
 """How far each law is from the first."""
@@ -34,39 +31,23 @@ def law(name: str) -> Candidate:
 KNOWN = {name: law(name) for name in OFF}
 
 
-class Summed:
+class Summed(OneRing):
     """A ring with a loss that is the sum of what its places lose: one channel tells no place."""
 
     name = "summed"
-    nuisances: Sequence[Nuisance] = (Nuisance("tone", 0.01, "1"),)
     candidates: Sequence[Candidate] = tuple(KNOWN.values())
 
     def __init__(self) -> None:
         alike = {f"size@{p}": 0.25 for p in PLACES}
-        value = self._one(State.at(part("loss", alike, True), of("loss", alike), KNOWN).point(ZERO))
-        value = value + NOISE * np.random.default_rng(5).standard_normal(value.shape)
-        segments = (Segment(0.0, 20.0, None, 20.0),)
-        self.bundles = (
-            Bundle(("y",), ("V",), T_S, value, np.eye(1) * NOISE**2, segments, tones_hz=(TONE_HZ,)),
-        )
+        super().__init__(State.at(part("loss", alike, True), of("loss", alike), KNOWN).point(ZERO))
 
-    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
-        """See `System`."""
-        return [reduce([self._one(point)]) for point in points]
-
-    def tones_hz(self, point: Point) -> Array:
-        """See `Ringing`."""
-        return np.array([TONE_HZ * (1.0 + 0.01 * float(point.nuisance[0]))])
-
-    def _one(self, point: Point) -> Array:
-        value = np.sin(2.0 * np.pi * self.tones_hz(point)[0] * T_S)
+    def added(self, point: Point) -> Array | float:
+        """The losses."""
+        found: Array | float = 0.0
         for name, on in point.effects.items():
             loss = np.sin(2.0 * np.pi * 0.7 * T_S) + OFF[name] * np.cos(2.0 * np.pi * 2.1 * T_S)
-            value = value + sum(on.values.values()) * loss
-        return np.asarray(value[:, None])
-
-
-ZERO = np.zeros(1)
+            found = found + sum(on.values.values()) * loss
+        return found
 
 
 def part(name: str, sizes: dict[str, float], shared: bool) -> Hypothesis:

@@ -1,13 +1,12 @@
 """What a law is mistaken for is led too: it the other way, and another that is akin."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
-from analysis.engine import Bundle, Candidate, Nuisance, Point, Segment, Shape, Term
+from analysis.engine import Candidate, Point, Shape, Term
 from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
@@ -18,10 +17,8 @@ from analysis.engine.look import look
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
-from analysis.engine.system import Prediction
+from tests.analysis.one_ring import T_S, ZERO, OneRing
 
-T_S = np.arange(0.0, 20.0, 0.02)
-NOISE, TONE_HZ, ZERO = 0.01, 5.0, np.zeros(1)
 HARMONICS_HZ = (2.1, 3.3)
 """Besides 0.7 Hz: of the one kind of loop, and of the other."""
 
@@ -34,36 +31,20 @@ LOOP = Candidate(
 HYPOTHESIS = Hypothesis({"loop": Part(("size",), shapes={"kind": 1.0})})
 
 
-class Looped:
+class Looped(OneRing):
     """A ring, and a loop of one kind or the other."""
 
     name = "looped"
-    nuisances: Sequence[Nuisance] = (Nuisance("tone", 0.01, "1"),)
     candidates: Sequence[Candidate] = (LOOP,)
 
-    def __init__(self, true: Point) -> None:
-        value = self._one(true)
-        value = value + NOISE * np.random.default_rng(5).standard_normal(value.shape)
-        segments = (Segment(0.0, 20.0, None, 20.0),)
-        self.bundles = (
-            Bundle(("y",), ("V",), T_S, value, np.eye(1) * NOISE**2, segments, tones_hz=(TONE_HZ,)),
-        )
-
-    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
-        """See `System`."""
-        return [reduce([self._one(point)]) for point in points]
-
-    def tones_hz(self, point: Point) -> Array:
-        """See `Ringing`."""
-        return np.array([TONE_HZ * (1.0 + 0.01 * float(point.nuisance[0]))])
-
-    def _one(self, point: Point) -> Array:
-        value = np.sin(2.0 * np.pi * self.tones_hz(point)[0] * T_S)
+    def added(self, point: Point) -> Array | float:
+        """The loop."""
+        found: Array | float = 0.0
         for on in point.effects.values():
             hertz = HARMONICS_HZ[round(on.shapes["kind"])]
             loop = np.sin(2.0 * np.pi * 0.7 * T_S) + 0.3 * np.cos(2.0 * np.pi * hertz * T_S)
-            value = value + on.values["size"] * loop
-        return np.asarray(value[:, None])
+            found = found + on.values["size"] * loop
+        return found
 
 
 def state_of(size: float, kind: float) -> State:
