@@ -67,7 +67,7 @@ def whole_guesses(system: System, candidates: Mapping[str, Candidate], found: Fa
                 for one, columns in zip(_forms(screen, candidate), does, strict=True)
             ]
             led = [
-                follow_ring(system, one.nuisance, one.state, everything=True, near=True)
+                _led(system, one, nothing)
                 for one in _bent(system, candidates, candidate, found, forms)
             ]
             best = min((one for one in led if one.to_end), key=cost_of, default=None)
@@ -142,7 +142,14 @@ def whole_beside(
         ]
         near = [(one, rise) for one, rise in said if -ASKS < rise < most]
         for start in _bent(system, candidates, candidate, found, near):
-            yield follow_ring(system, start.nuisance, start.state, everything=True, near=True)
+            yield _led(system, start, found.followed)
+
+
+def _led(system: System, start: Followed, beside: Followed) -> Followed:
+    """Parameters led to where they belong beside it, while it may catch up with what was there."""
+    return follow_ring(
+        system, start.nuisance, start.state, everything=True, near=True, ahead=beside.costs
+    )
 
 
 def _bent(
