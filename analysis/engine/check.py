@@ -17,7 +17,7 @@ from analysis.engine.part import rings
 from analysis.engine.recorded import check_bundles, looked_at, name_of
 from analysis.engine.stated import check_candidates, check_lists, check_nuisances
 from analysis.engine.system import Point, Prediction, System
-from analysis.engine.unlikely import rounded, unlikely
+from analysis.engine.unlikely import elsewhere, rounded, unlikely
 from cdpr8.errors import DataError
 
 LEAST_CHANGE = 1e-12
@@ -68,7 +68,9 @@ def check(system: System) -> tuple[str, ...]:
             remedy="draw no random numbers, keep no state, and hand `reduce` arrays of their own",
         )
     odd = unlikely(system.bundles, found)
-    return odd if rings(system) else (*odd, *_each(system, nominal, found))
+    if rings(system):
+        return odd
+    return (*odd, *elsewhere(system.bundles, found), *_each(system, nominal, found))
 
 
 def _each(system: System, nominal: Point, at: Prediction) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
@@ -13,6 +14,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.part import Part, records_of, rings
 from analysis.engine.ring_fit import EFFORT, follow_ring
 from analysis.engine.search import Search
+from analysis.engine.sensitivity import nuisance_columns, simulate_features
 from analysis.engine.state import State
 from analysis.engine.system import Point, Ring, System
 from analysis.engine.whiten import Whiten
@@ -22,6 +24,9 @@ RINGS: tuple[Ring, ...] = ("left_out", "as_is")
 NEARLY = 1.2
 """From where all of the data led, the used part leads in a few steps: none is begun after so many
 simulations for each free number, a little more than all differences take once."""
+
+MOST_STEPS = 30
+"""Of parameters alone, to where they fit."""
 
 LEAST_RECORDS = 3
 """From so many recordings on, one is kept back whole but for its rest, unless one is sealed."""
@@ -72,8 +77,8 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     if part is not None:
         system, start = part, part.own(start)
     if not rings(system):
-        null = search.refiner.settle(search.refiner.again(search.null, _used(search, held)))
-        before = after = _errors(system, null.point.nuisance, None, held, near=False)
+        alone = _parameters_alone(search, _used(search, held))
+        before = after = _errors(system, alone, None, held, near=False)
     elif search.faint and chosen.hypothesis.parts:
         before = after = _least(system, _tried(start, None), held)
     else:
@@ -86,6 +91,37 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
         nuisance = again.point.nuisance if part is None else part.own(again.point.nuisance)
         after = _errors(system, nuisance, again.state, held, near=search.faint)
     return Confirmation(before, after, held)
+
+
+def _parameters_alone(search: Search, used: NDArray[np.bool_]) -> Array:
+    """Parameters where they fit best within their priors, nothing left out, shape (nuisances,).
+
+    Evidence leaves them where they were, where they do not explain what is left out; what is held
+    against it is a fit.
+
+    Parameters
+    ----------
+    search
+        What was found.
+    used
+        Features that count, shape (f,).
+    """
+    system, lens, null = search.system, search.lens, search.null
+    used = used & null.problem.used
+    root = np.sqrt(null.problem.base[used])
+
+    def left(at: Array) -> Array:
+        (features,) = simulate_features(system, lens, [Point(at)])
+        return np.concatenate([(search.data - features)[used] / root, at])
+
+    def columns(at: Array) -> Array:
+        does = nuisance_columns(system, lens, at)[used] / root[:, None]
+        return np.concatenate([-does, np.eye(len(at))])
+
+    start = null.point.nuisance
+    if not len(start):
+        return start
+    return np.asarray(least_squares(left, start, columns, max_nfev=MOST_STEPS).x)
 
 
 def _held(system: System, records: Sequence[str]) -> str:

@@ -156,12 +156,15 @@ class Frame:
 
 def _inverse(matrix: Array) -> Array:
     """Pseudo-inverse of a symmetric matrix, whatever the units of its numbers, shape (k, k)."""
-    scale = np.sqrt(np.diag(matrix))
+    if not matrix.size:
+        return matrix
+    scale = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     scale[scale == 0.0] = 1.0
     units = np.outer(scale, scale)
-    return (
-        np.asarray(np.linalg.pinv(matrix / units) / units, dtype=float) if matrix.size else matrix
-    )
+    if not np.isfinite(matrix / units).all():
+        # What was simulated came to nothing: nothing is known of any of them.
+        return np.diag(np.full(len(matrix), np.inf))
+    return np.asarray(np.linalg.pinv(matrix / units) / units, dtype=float)
 
 
 def directions(nuisance: Array, base: Array, used: NDArray[np.bool_]) -> Array:

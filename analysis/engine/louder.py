@@ -43,6 +43,9 @@ the second, it may be something left out."""
 SAME = 4.0
 """Differences of both orders tell the same to within so many standard deviations."""
 
+QUIETER = 1.05
+"""What explains best took roughness for itself, where a sigma is that much less beside it."""
+
 LEAST_SAMPLES = 50
 """That a channel needs."""
 
@@ -73,6 +76,21 @@ class Louder(Restated):
         )
         self.times = np.sqrt(np.concatenate(times))
         """Sigma of the noise over what is stated, shape (channels of all bundles,)."""
+
+    def beside(self, point: Point) -> System | None:
+        """The system with the noise that is left about what explains best; None: about as much.
+
+        What sticks or lags is rough as well, where samples are few: with that on, less is left.
+
+        Parameters
+        ----------
+        point
+            What explains best.
+        """
+        told = louder_than_stated(self.stated, point)
+        if told is None:
+            return self.stated
+        return told if bool((told.times < self.times / QUIETER).any()) else None
 
     @property
     def note(self) -> str:

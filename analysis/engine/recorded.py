@@ -162,7 +162,7 @@ def _check_segment(bundle: Bundle, segment: Segment, where: str) -> int:
         raise DataError(
             f"{bad.size} of {len(value)} samples are not finite, first at {t_s[bad[0]]:g} s",
             allowed="finite numbers in every sample that is looked at", where=where,
-            remedy="end the segment before them, or fill them and say so in the noise",
+            remedy="end the segment before them, or give the channel a bundle without them",
         )  # fmt: skip
     if len(t_s) < LEAST_SAMPLES:
         return len(t_s)

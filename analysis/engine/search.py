@@ -87,6 +87,7 @@ def search(
     anew: bool = False,
     most_causes: int = 3,
     start: Start | None = None,
+    loud: bool = True,
 ) -> Search:
     """Look for what explains the recording.
 
@@ -103,9 +104,11 @@ def search(
         Of a hypothesis.
     start
         From where what rings is led; None: from the likeliest parameters.
+    loud
+        Whether samples may tell that noise is more than stated.
     """
     lens, data, calibrated = look(system, tell)
-    louder = None if rings(system) else _louder(system, calibrated)
+    louder = _louder(system, calibrated) if loud and not rings(system) else None
     if louder is not None:
         return search(louder, tell, anew=anew, most_causes=most_causes)
     refiner = Refiner(system, lens, data, calibrated, anew=anew)
@@ -138,6 +141,9 @@ def search(
         refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
         found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))
         null = next(one for one in found.fitted if not one.hypothesis.parts)
+        quieter = _quieter(system, found.fitted[0]) if loud else None
+        if quieter is not None:
+            return search(quieter, tell, anew=anew, most_causes=most_causes, loud=False)
     if isinstance(system, Sharper):
         found = found._replace(fitted=_as_stated(found.fitted, system.told))
     alone = next((one for one in found.fitted if not one.hypothesis.parts), null)
@@ -169,6 +175,11 @@ def _louder(system: System, calibrated: Calibrated) -> Louder | None:
     """The system with the noise that its samples have; None: as it is."""
     told = isinstance(system, Louder)
     return None if told else louder_than_stated(system, Point(calibrated.at))
+
+
+def _quieter(system: System, best: Fitted) -> System | None:
+    """The system with less noise, where what explains best is rough itself; None: as it is."""
+    return system.beside(best.point) if isinstance(system, Louder) else None
 
 
 def _as_stated(fitted: Sequence[Fitted], told: Told) -> list[Fitted]:

@@ -23,6 +23,9 @@ OTHER_UNIT = 100.0
 VARIES = 10.0
 """Standard deviations of the noise, by which one of the two varies there."""
 
+FAR_OFF = 10.0
+"""So many times what either varies by, recorded and simulated are hardly of the same zero."""
+
 COARSE = 0.1
 """Rounding to more than this share of the noise is felt."""
 
@@ -70,6 +73,36 @@ def _channels(bundle: Bundle, inside: NDArray[np.bool_], seen: Array) -> Iterato
                 f"{name!r} varies by {spread:.2g} {unit} as recorded, and by {expected:.2g} {unit} "
                 "as simulated. Both are taken to be in the unit that is stated"
             )
+
+
+def elsewhere(bundles: Sequence[Bundle], nominal: Prediction) -> tuple[str, ...]:
+    """Channels that are recorded far from where they are simulated, a sentence for each.
+
+    Parameters
+    ----------
+    bundles
+        What was recorded.
+    nominal
+        What is simulated, nothing left out.
+    """
+    found = []
+    for i, (bundle, seen) in enumerate(zip(bundles, nominal, strict=True)):
+        inside = looked_at(bundle)
+        recorded, simulated = bundle.value[inside], np.asarray(seen)[inside]
+        sigmas = np.median(sigmas_of(bundle)[inside], axis=0)
+        for k, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
+            known = recorded[:, k][np.isfinite(recorded[:, k])]
+            if len(known) < LEAST_SAMPLES:
+                continue
+            off = float(np.median(known) - np.median(simulated[:, k]))
+            varies = max(float(np.std(known)), float(np.std(simulated[:, k])), VARIES * sigmas[k])
+            if abs(off) > FAR_OFF * varies:
+                found.append(
+                    f"{name_of(bundle, i)}: {name!r} is {off:+.3g} {unit} from what is simulated, "
+                    f"{abs(off) / varies:.0f} times what either varies by. Both are taken to be in "
+                    "the unit that is stated, from the same zero"
+                )
+    return tuple(found)
 
 
 def rounded(bundles: Sequence[Bundle], simulated: Sequence[Prediction]) -> tuple[str, ...]:

@@ -84,3 +84,13 @@ def test_noise_that_goes_on_from_sample_to_sample_is_told_as_such() -> None:
     assert coloured(system, NOTHING) == {"y": pytest.approx(0.35, abs=0.1)}
     assert coloured(_stated(1.0), NOTHING) == {}
     assert coloured(_stated(0.5), NOTHING) == {}, "there is less of it, and it is white"
+
+
+def test_what_explains_best_may_have_been_what_was_rough() -> None:
+    system = _stated(1.0)
+    assert Louder(system, [np.array([1.3**2])], [500]).beside(NOTHING) is system
+    louder = _stated(1.2)
+    assert _told(louder).beside(NOTHING) is None, "the same noise is left"
+    less = Louder(louder, [np.array([1.5**2])], [500]).beside(NOTHING)
+    assert isinstance(less, Louder)
+    assert less.times[0] == pytest.approx(1.2, rel=0.05)

@@ -5,7 +5,7 @@ import pytest
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle, Segment
-from analysis.engine.unlikely import rounded, unlikely
+from analysis.engine.unlikely import elsewhere, rounded, unlikely
 
 T_S = np.arange(0.0, 10.0, 0.05)
 NOISE = 0.01
@@ -74,3 +74,14 @@ def test_a_bundle_that_is_not_looked_at_says_nothing() -> None:
     bundle = Bundle(("x",), ("V",), T_S, np.zeros((len(T_S), 1)), covariance, ())
     assert unlikely((bundle,), [MOTION[:, None]]) == ()
     assert rounded((bundle,), [[MOTION[:, None]]]) == ()
+
+
+def test_another_zero_is_said() -> None:
+    covariance = np.array([[NOISE**2]])
+    for off, many in ((273.15, 1), (5.0, 0)):
+        recorded = (MOTION + DRAWN + off)[:, None]
+        whole = (Segment(0.0, 10.0),)
+        bundle = Bundle(("x",), ("degC",), T_S, recorded, covariance, whole)
+        found = elsewhere((bundle,), [MOTION[:, None]])
+        assert len(found) == many
+        assert all("'x' is +273 degC from what is simulated" in one for one in found)
