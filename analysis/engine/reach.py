@@ -25,6 +25,9 @@ SIGMAS = (1.0, 2.0, 3.0)
 USUAL = 3.0
 """What comes to nothing at so many times that size, or less, may well be what is there."""
 
+WHY = "<why>"
+"""Stands for the reason, in a note whose point was not simulated yet."""
+
 
 @dataclass(frozen=True)
 class Unreached:
@@ -85,7 +88,7 @@ def _sizes(nominal: Point, candidate: Candidate, names: Sequence[str]) -> Iterat
         if all(one.low <= values[one.name] <= one.high for one in terms):
             said = ", ".join(f"{one.name!r} at {values[one.name]:g} {one.unit}" for one in terms)
             note = (
-                f"candidate {candidate.name!r} with {said} cannot be simulated: {{why}}. So much "
+                f"candidate {candidate.name!r} with {said} cannot be simulated: {WHY}. So much "
                 "of it, and more, is not weighed, and not ruled out"
             )
             point = replace(nominal, effects={candidate.name: Setting(values, shapes)})
@@ -98,7 +101,7 @@ def _sigmas(nominal: Point, i: int, name: str, sign: float) -> Iterator[Asked]:
         at: Array = nominal.nuisance.copy()
         at[i] = sign * sigmas
         note = (
-            f"nuisance {name!r} at {sign * sigmas:+g} sigmas cannot be simulated: {{why}}. "
+            f"nuisance {name!r} at {sign * sigmas:+g} sigmas cannot be simulated: {WHY}. "
             "No fit can go there: state it so that it can, as the logarithm of what is positive"
         )
         yield replace(nominal, nuisance=at), Unreached("", sigmas < SIGMAS[-1], note)
@@ -118,7 +121,7 @@ def _first(system: System, asked: Sequence[Asked]) -> Unreached | None:
         except FAILED as error:
             whole, why = False, f"{type(error).__name__}: {error}"
         if not whole:
-            return replace(one, note=one.note.format(why=why))
+            return replace(one, note=one.note.replace(WHY, why))
     return None
 
 
