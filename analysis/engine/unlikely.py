@@ -23,6 +23,9 @@ OTHER_UNIT = 100.0
 VARIES = 10.0
 """Standard deviations of the noise, by which one of the two varies there."""
 
+STILL = 1e-6
+"""What is simulated to vary by less, in its noise, is rounding: it is simulated not to move."""
+
 FAR_OFF = 10.0
 """So many times what either varies by, recorded and simulated are hardly of the same zero."""
 
@@ -67,7 +70,7 @@ def _channels(bundle: Bundle, inside: NDArray[np.bool_], seen: Array) -> Iterato
             )
             continue
         spread, expected = float(np.std(values)), float(np.std(simulated))
-        varies = max(spread, expected) > VARIES * sigma and expected > 0.0
+        varies = max(spread, expected) > VARIES * sigma and expected > STILL * sigma
         if varies and not 1.0 / OTHER_UNIT < spread / expected < OTHER_UNIT:
             yield (
                 f"{name!r} varies by {spread:.2g} {unit} as recorded, and by {expected:.2g} {unit} "

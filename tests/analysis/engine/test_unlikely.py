@@ -28,6 +28,7 @@ def test_nothing_is_said_of_what_may_be_left_out(times: float) -> None:
 def test_nothing_is_said_where_nothing_is_simulated_to_move() -> None:
     assert said(MOTION + DRAWN, np.zeros(len(T_S))) == ()
     assert said(DRAWN, np.zeros(len(T_S))) == ()
+    assert said(MOTION + DRAWN, 1e-14 * MOTION) == (), "rounding"
 
 
 @pytest.mark.parametrize("value", [0.0, 3.2])
