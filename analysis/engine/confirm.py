@@ -119,10 +119,10 @@ def _parameters_alone(search: Search, used: NDArray[np.bool_]) -> Array:
         return np.concatenate([-does, np.eye(len(at))])
 
     start = null.point.nuisance
-    if not np.isfinite(left(start)).all():
-        start = np.zeros_like(start)
     if not len(start):
         return start
+    if not np.isfinite(left(start)).all():
+        start = np.zeros_like(start)
     return np.asarray(least_squares(left, start, columns, max_nfev=MOST_STEPS).x)
 
 

@@ -16,8 +16,9 @@ from analysis.engine.sensitivity import BEYOND, FAILED
 from analysis.engine.system import Point, Prediction, System
 from analysis.engine.whiten import sigmas_of
 
-RUNGS = (1.0, 3.0, 10.0, 30.0)
-"""Of a magnitude, so many times the size at which it is screened, as far as its range goes."""
+RUNGS = (3.0, 10.0, 30.0)
+"""Of a magnitude, so many times the size at which it is screened, as far as its range goes; what
+fails at that size is no system (`check`)."""
 
 SIGMAS = (1.0, 2.0, 3.0)
 """And of a parameter."""
@@ -56,14 +57,14 @@ def unreached(system: System) -> tuple[Unreached, ...]:
     system
         What is simulated; the nominal point can be.
     """
-    nominal = Point(np.zeros(len(system.nuisances)))
+    nominal, whole = Point(np.zeros(len(system.nuisances))), _Whole(system)
     found = [
-        _first(system, list(_sizes(nominal, candidate, names)))
+        _first(system, whole, list(_sizes(nominal, candidate, names)))
         for candidate in system.candidates
         for names in _together(candidate)
     ]
     found += [
-        _first(system, list(_sigmas(nominal, i, one.name, sign)))
+        _first(system, whole, list(_sigmas(nominal, i, one.name, sign)))
         for i, one in enumerate(system.nuisances)
         for sign in (1.0, -1.0)
     ]
@@ -107,20 +108,15 @@ def _sigmas(nominal: Point, i: int, name: str, sign: float) -> Iterator[Asked]:
         yield replace(nominal, nuisance=at), Unreached("", sigmas < SIGMAS[-1], note)
 
 
-def _first(system: System, asked: Sequence[Asked]) -> Unreached | None:
+def _first(system: System, whole: "_Whole", asked: Sequence[Asked]) -> Unreached | None:
     """The first that comes to nothing."""
-    try:
-        if all(system.simulate([point for point, _ in asked], _Whole(system))):
-            return None
-    except FAILED:
-        pass
     for point, one in asked:
         why = "it is not finite"
         try:
-            (whole,) = system.simulate([point], _Whole(system))
+            (can,) = system.simulate([point], whole)
         except FAILED as error:
-            whole, why = False, f"{type(error).__name__}: {error}"
-        if not whole:
+            can, why = False, f"{type(error).__name__}: {error}"
+        if not can:
             return replace(one, note=one.note.replace(WHY, why))
     return None
 

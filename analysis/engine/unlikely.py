@@ -3,10 +3,10 @@
 None of it is an error by itself, and each makes a diagnosis of something else: so it is said.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
@@ -46,36 +46,53 @@ def unlikely(bundles: Sequence[Bundle], nominal: Prediction) -> tuple[str, ...]:
     nominal
         What is simulated, nothing left out.
     """
+    return _said(bundles, nominal, _odd)
+
+
+def _said(
+    bundles: Sequence[Bundle], nominal: Prediction, odd: Callable[["_Channel"], Iterator[str]]
+) -> tuple[str, ...]:
+    """What is said of each channel of which enough is recorded, and in which bundle it is."""
     found = []
     for i, (bundle, seen) in enumerate(zip(bundles, nominal, strict=True)):
         inside = looked_at(bundle)
-        if int(inside.sum()) >= LEAST_SAMPLES:
-            where = name_of(bundle, i)
-            found += [f"{where}: {one}" for one in _channels(bundle, inside, seen[inside])]
+        sigmas = np.median(sigmas_of(bundle)[inside], axis=0) if inside.any() else ()
+        for k, sigma in enumerate(sigmas):
+            recorded, simulated = bundle.value[inside, k], np.asarray(seen)[inside, k]
+            one = _Channel(
+                bundle.names[k], bundle.units[k], recorded[np.isfinite(recorded)], simulated,
+                float(sigma),
+            )  # fmt: skip
+            if int(inside.sum()) >= LEAST_SAMPLES and len(one.recorded):
+                found += [f"{name_of(bundle, i)}: {what}" for what in odd(one)]
     return tuple(found)
 
 
-def _channels(bundle: Bundle, inside: NDArray[np.bool_], seen: Array) -> Iterator[str]:
-    recorded, sigmas = bundle.value[inside], np.median(sigmas_of(bundle)[inside], axis=0)
-    for k, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
-        values, simulated, sigma = recorded[:, k], seen[:, k], float(sigmas[k])
-        values = values[np.isfinite(values)]
-        if not len(values):
-            continue
-        if np.ptp(values) == 0.0:
-            yield (
-                f"{name!r} is {values[0]:g} {unit} in all of {len(values)} samples, though its "
-                f"noise is stated as {sigma:.2g} {unit}. A channel that is dead names causes: "
-                "leave it out"
-            )
-            continue
-        spread, expected = float(np.std(values)), float(np.std(simulated))
-        varies = max(spread, expected) > VARIES * sigma and expected > STILL * sigma
-        if varies and not 1.0 / OTHER_UNIT < spread / expected < OTHER_UNIT:
-            yield (
-                f"{name!r} varies by {spread:.2g} {unit} as recorded, and by {expected:.2g} {unit} "
-                "as simulated. Both are taken to be in the unit that is stated"
-            )
+class _Channel(NamedTuple):
+    """What was recorded and simulated of one channel, and its noise."""
+
+    name: str
+    unit: str
+    recorded: Array
+    simulated: Array
+    sigma: float
+
+
+def _odd(one: _Channel) -> Iterator[str]:
+    if np.ptp(one.recorded) == 0.0:
+        yield (
+            f"{one.name!r} is {one.recorded[0]:g} {one.unit} in all of {len(one.recorded)} "
+            f"samples, though its noise is stated as {one.sigma:.2g} {one.unit}. A channel that is "
+            "dead names causes: leave it out"
+        )
+        return
+    spread, expected = float(np.std(one.recorded)), float(np.std(one.simulated))
+    varies = max(spread, expected) > VARIES * one.sigma and expected > STILL * one.sigma
+    if varies and not 1.0 / OTHER_UNIT < spread / expected < OTHER_UNIT:
+        yield (
+            f"{one.name!r} varies by {spread:.2g} {one.unit} as recorded, and by {expected:.2g} "
+            f"{one.unit} as simulated. Both are taken to be in the unit that is stated"
+        )
 
 
 def elsewhere(bundles: Sequence[Bundle], nominal: Prediction) -> tuple[str, ...]:
@@ -88,24 +105,19 @@ def elsewhere(bundles: Sequence[Bundle], nominal: Prediction) -> tuple[str, ...]
     nominal
         What is simulated, nothing left out.
     """
-    found = []
-    for i, (bundle, seen) in enumerate(zip(bundles, nominal, strict=True)):
-        inside = looked_at(bundle)
-        recorded, simulated = bundle.value[inside], np.asarray(seen)[inside]
-        sigmas = np.median(sigmas_of(bundle)[inside], axis=0)
-        for k, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
-            known = recorded[:, k][np.isfinite(recorded[:, k])]
-            if len(known) < LEAST_SAMPLES:
-                continue
-            off = float(np.median(known) - np.median(simulated[:, k]))
-            varies = max(float(np.std(known)), float(np.std(simulated[:, k])), VARIES * sigmas[k])
-            if abs(off) > FAR_OFF * varies:
-                found.append(
-                    f"{name_of(bundle, i)}: {name!r} is {off:+.3g} {unit} from what is simulated, "
-                    f"{abs(off) / varies:.0f} times what either varies by. Both are taken to be in "
-                    "the unit that is stated, from the same zero"
-                )
-    return tuple(found)
+    return _said(bundles, nominal, _away)
+
+
+def _away(one: _Channel) -> Iterator[str]:
+    off = float(np.median(one.recorded) - np.median(one.simulated))
+    spread = max(float(np.std(one.recorded)), float(np.std(one.simulated)))
+    varies = max(spread, VARIES * one.sigma)
+    if abs(off) > FAR_OFF * varies:
+        yield (
+            f"{one.name!r} is {off:+.3g} {one.unit} from what is simulated, "
+            f"{abs(off) / varies:.0f} times what either varies by. Both are taken to be in the "
+            "unit that is stated, from the same zero"
+        )
 
 
 def rounded(bundles: Sequence[Bundle], simulated: Sequence[Prediction]) -> tuple[str, ...]:
