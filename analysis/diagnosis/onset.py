@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.diagnosis.machine import RecordedMachine
+from analysis.diagnosis.one_thread import one_thread_each
 from analysis.diagnosis.recording import Recording, recording
 from analysis.engine.followed import Followed
 from analysis.engine.ring_samples import Samples
@@ -57,11 +58,35 @@ def as_it_moved(
     Run, list of str
         And what a reader must know where that is not what a rig file means by default.
     """
-    excitation = run.start.excitation
-    stated = excitation.model_fields_set
-    if excitation.amplitude_deg == 0.0 or excitation.ramp_s == 0.0 or {"ramp", "ending"} <= stated:
+    if not _is_open(run.start.excitation):
         return run, []
-    seen = recording(run, pose, shift_s)
+    with one_thread_each():
+        excitation, notes = excitation_of(recording(run, pose, shift_s))
+    return (moved_by(run, excitation), notes) if notes else (run, notes)
+
+
+def moved_by(run: Run, excitation: Excitation) -> Run:
+    """The run, its motion of another excitation than it says."""
+    return replace(run, start=run.start.model_copy(update={"excitation": excitation}))
+
+
+def excitation_of(seen: Recording) -> tuple[Excitation, list[str]]:
+    """The excitation as samples show it, where `start.json` leaves its ramp or ending open.
+
+    Parameters
+    ----------
+    seen
+        The recording.
+
+    Returns
+    -------
+    Excitation, list of str
+        As stated, and nothing, where the samples show no other; else what a reader must know.
+    """
+    excitation = seen.excitation
+    stated = excitation.model_fields_set
+    if not _is_open(excitation):
+        return excitation, []
     found: dict[str, str] = {}
     notes = []
     if "ramp" not in stated and (ramp := _ramp(seen)) != excitation.ramp:
@@ -77,10 +102,13 @@ def as_it_moved(
             f"the motion ends {ENDS[ending]}, which the recording shows and start.json does not "
             f'say: simulated so (`ending = "{ending}"`)'
         )
-    if not found:
-        return run, []
-    moved = excitation.model_copy(update=found)
-    return replace(run, start=run.start.model_copy(update={"excitation": moved})), notes
+    return (excitation.model_copy(update=found) if found else excitation), notes
+
+
+def _is_open(excitation: Excitation) -> bool:
+    """Whether there is a ramp or an ending that is not stated."""
+    moves = excitation.amplitude_deg != 0.0 and excitation.ramp_s != 0.0
+    return moves and not {"ramp", "ending"} <= excitation.model_fields_set
 
 
 ENDS: dict[Ending, str] = {

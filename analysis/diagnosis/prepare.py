@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from analysis.align import find_start_shift
-from analysis.diagnosis.onset import as_it_moved
+from analysis.diagnosis.one_thread import one_thread_each
+from analysis.diagnosis.onset import excitation_of, moved_by
 from analysis.diagnosis.recording import Recording, recording
 from analysis.series import measured_cables, measured_tension
 from analysis.tracking import poses_of
@@ -58,7 +59,8 @@ def prepare(
             allowed="folders of different names",
             remedy="rename one: what is found is told by the run's name",
         )
-    return tuple(_prepare(run, rig, step, workers) for run in runs)
+    with one_thread_each():
+        return tuple(_prepare(run, rig, step, workers) for run in runs)
 
 
 def _prepare(run: Run, rig: Rig | None, step: Callable[[], None] | None, workers: int) -> Recording:
@@ -76,9 +78,11 @@ def _prepare(run: Run, rig: Rig | None, step: Callable[[], None] | None, workers
             f"the run does not say when its motion started: found {shift:+.3f} s from "
             "what it says; what is late in pose and tensions alike cannot be told"
         )
-    run, moved = as_it_moved(run, pose, shift)
-    notes += moved
     made = recording(run, pose, shift)
+    excitation, moved = excitation_of(made)
+    if moved:
+        made = recording(moved_by(run, excitation), pose, shift)
+        notes += moved
     return replace(made, notes=(*run.notes, *notes, *made.notes))
 
 

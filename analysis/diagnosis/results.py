@@ -8,12 +8,13 @@ from typing import Any
 
 from analysis.diagnosis.guesses import guesses
 from analysis.diagnosis.nuisances import DRIVE_SHARE, LATENCY_S
+from analysis.diagnosis.one_thread import one_thread_each
 from analysis.diagnosis.pictures import FILE, Pictures
 from analysis.diagnosis.picturing import picture, with_causes
 from analysis.diagnosis.proposing import proposals
 from analysis.diagnosis.ranking import harmonics_of, ranking, ruled_out
 from analysis.diagnosis.recording import Recording
-from analysis.diagnosis.run import RESULT, RunDiagnosis, one_thread_each
+from analysis.diagnosis.run import RESULT, RunDiagnosis
 from analysis.diagnosis.sides import sides
 from analysis.diagnosis.tables import markdown
 from analysis.diagnosis.words import sections

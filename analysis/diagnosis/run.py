@@ -2,13 +2,13 @@
 
 import json
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from analysis.diagnosis.improve import write_improved
 from analysis.diagnosis.machine import RecordedMachine
+from analysis.diagnosis.one_thread import one_thread_each
 from analysis.diagnosis.prepare import prepare
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.statement import statement
@@ -151,12 +151,3 @@ def diagnose_runs(
             found.machine, found.diagnosis, looked, results
         )
     return found.statement
-
-
-def one_thread_each() -> AbstractContextManager[object]:
-    """Small matrices are slower on many threads, and slowest where those are wanted elsewhere."""
-    import scipy.linalg  # noqa: F401  # its own library must be there to be limited
-    from threadpoolctl import threadpool_limits
-
-    limits: AbstractContextManager[object] = threadpool_limits(1)
-    return limits
