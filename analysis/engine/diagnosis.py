@@ -23,6 +23,7 @@ from analysis.engine.part import records_of, rings
 from analysis.engine.reach import Unreached, unreached
 from analysis.engine.restated import restatements
 from analysis.engine.search import REMAINS_ALONE, Search, search
+from analysis.engine.summary import summary
 from analysis.engine.system import Nuisance, System
 from cdpr8.errors import UsageError
 
@@ -124,6 +125,9 @@ class Diagnosis:
     def verdict(self) -> str:
         """The word "none", "parameter", "explained", "ambiguous" or "unexplained"."""
         return "" if self.judgement is None else self.judgement.verdict
+
+    def __str__(self) -> str:
+        return summary(self)
 
 
 def diagnose(
