@@ -181,11 +181,13 @@ BETWEEN = (
     "loaded_share",
     "reaction_share",
     "depth_share",
+    "servo_s",
     "front_share",
     "ramps_kept_share",
     "highest_hz",
 )
-"""Shapes that lead from one law to another: a row of branches, to one whose end is out of sight."""
+"""Shapes that lead from one law to another: a row of branches, to one whose end is out of sight; a
+servo, to one that is too quick to be seen."""
 
 GROWING = ("camera_exposure", "cable_sag", "cable_end_forcing")
 """What it does goes with the square of its magnitude."""

@@ -65,6 +65,10 @@ MANY, ELSE = 4, 0.5
 """A cause of which more numbers than this were chosen out of many, such as a dozen coordinates of
 sixteen points, explains whatever is there: it is as likely something else."""
 
+ON_EDGE = 0.5
+"""And so is one with a number at the edge of what is plausible, of which the edge is no law of its
+own: of six that were told as sure in blind sets, two were there."""
+
 
 @dataclass(frozen=True)
 class Judgement:
@@ -170,7 +174,7 @@ def judge(
     doubt += (1.0 - doubt) * DOUBT_ASIDE * aside
     sure = (causes[0], *(one for one in causes[1:] if one.present > SECOND))
     doubts = {
-        one.name: doubt + (1.0 - doubt) * _any_would_do(chosen, candidates[one.name])
+        one.name: doubt + (1.0 - doubt) * _by_itself(one, chosen, candidates[one.name])
         for one in sure
         if one.name not in shown
     }
@@ -243,10 +247,11 @@ def doubt_of(
     return min(beyond / (1.0 + beyond), MOST_DOUBT)
 
 
-def _any_would_do(chosen: Fitted, candidate: Candidate) -> float:
+def _by_itself(cause: Cause, chosen: Fitted, candidate: Candidate) -> float:
     """The probability that a cause was chosen for what it can take up, and not for being there."""
     free = len(chosen.hypothesis.parts[candidate.name].groups(candidate))
-    return ELSE if candidate.chosen_terms and free > MANY else 0.0
+    any_would_do = candidate.chosen_terms and free > MANY
+    return max(ELSE if any_would_do else 0.0, ON_EDGE if cause.at_limit else 0.0)
 
 
 def _idle(

@@ -76,6 +76,18 @@ def test_a_dozen_coordinates_would_explain_anything(
     assert cause.probability > 0.4
 
 
+def test_a_cause_at_the_edge_of_what_is_plausible_is_as_likely_something_else(
+    refiner: Refiner,
+) -> None:
+    first, *others = of(refiner, 1.02)
+    on_edge = replace(first, at_limit=(("damping", "rate"),))
+    said = judge([on_edge, *others], CANDIDATES)
+    assert said.verdict == "ambiguous"
+    (cause,) = said.causes
+    assert cause.at_limit == ("rate",)
+    assert cause.probability <= 0.5 < judge([first, *others], CANDIDATES).causes[0].probability
+
+
 def test_recordings_in_which_it_does_not_hold_leave_doubt(refiner: Refiner) -> None:
     aside = [judge(of(refiner, 1.02), CANDIDATES, aside=one) for one in (0.0, 0.125, 0.25)]
     sure = [one.causes[0].probability for one in aside]
