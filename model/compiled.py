@@ -41,7 +41,7 @@ CALLED = {
 """Functions that Python calls, and the module of `model` each is in; all others of these modules
 are compiled into them."""
 
-LANES = ("lanes", "lane_steps")
+LANES = ("lane_sine", "lanes", "lane_steps")
 """Modules of the lane kernel."""
 
 
@@ -84,7 +84,17 @@ def lane_integrator(announce: Announce | None = None) -> Any:
 
 def _kernel_modules() -> tuple[ModuleType, ...]:
     """Modules whose functions are compiled; any of their functions may be called in the kernel."""
-    from model import cable, kernel, kinematics, lane_steps, lanes, loops, platform, runge_kutta
+    from model import (
+        cable,
+        kernel,
+        kinematics,
+        lane_sine,
+        lane_steps,
+        lanes,
+        loops,
+        platform,
+        runge_kutta,
+    )
     from model.library import assembled, bristle, context, smooth, taut_string
     from model.library import lanes as layout
     from model.library.discovery import effect_modules
@@ -102,6 +112,7 @@ def _kernel_modules() -> tuple[ModuleType, ...]:
         assembled,
         kernel,
         runge_kutta,
+        lane_sine,
         lanes,
         lane_steps,
         loops,
