@@ -93,7 +93,8 @@ def by_ring(
     if not near and _leads_bent(nothing):
         led.lead_first(first[:1])
         led.lead_released()
-        first = [] if led.arrived and not led.is_poor else first[1:]
+        to_noise = nothing.left < FAINT
+        first = [] if led.arrived and not (led.is_poor or to_noise) else first[1:]
     if enough is not None:
         led.lead_first(first)
     led.follow(first, single, guessed=about.followed.telling < 1.0)

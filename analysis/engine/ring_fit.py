@@ -16,7 +16,7 @@ from analysis.engine.known import Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.state import State
 from analysis.engine.system import System
-from analysis.engine.way import LOST, WINDOWS, Way
+from analysis.engine.way import LOST, STRAIN, WINDOWS, Way
 
 EFFORT, PATIENCE = 1000.0, 300.0
 """Whole simulations after which nothing is led on: some ten times all differences. At the beginning
@@ -133,4 +133,4 @@ def follow_ring(
 
 def _far(at: Followed) -> bool:
     """Whether parameters are so far from what is known of them that something else is there."""
-    return float(at.nuisance @ at.nuisance) > FAR
+    return at.strain > FAR or (at.is_bent and at.strain > STRAIN)

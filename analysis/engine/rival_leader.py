@@ -82,18 +82,32 @@ class RivalLeader(Leader):
                     return
 
     def _lead_alike(self, others: Sequence[Guess]) -> None:
-        """Laws of the best's kind in all places alike, where it leaves more than noise."""
-        best = self._best
-        if best.left < NOISE:
+        """Laws of the best's kind in all places alike, where it leaves more than noise.
+
+        And of what came as close in some places: of which kind it is, these may hide.
+        """
+        if self._best.left < NOISE:
             return
-        for one in kin_alike(best, others, self._refiner.candidates):
-            found = follow_ring(
-                self._system, one.nuisance, one.state.alike(), everything=True,
-                ahead=best.costs,
-            )  # fmt: skip
-            # What falls behind says nothing of its kind: that is led from the best's own places.
-            if farthest_first(found) < farthest_first(self._best):
-                self._keep(found)
+        for came in (self._best, *self._as_close_elsewhere()):
+            for one in kin_alike(came, others, self._refiner.candidates):
+                ahead = self._best.costs
+                found = follow_ring(
+                    self._system, one.nuisance, one.state.alike(), everything=True, ahead=ahead
+                )
+                # What falls behind says nothing of its kind: it is led from the best's own places.
+                if farthest_first(found) < farthest_first(self._best):
+                    self._keep(found)
+
+    def _as_close_elsewhere(self) -> list[Followed]:
+        """Single causes of other kinds than the best that came as close."""
+        close = cost_of(self._best) + CLOSE
+        kind = {self._refiner.candidates[name].kind for name in self._best.names}
+        singles = [one for one in self._led if one.to_end and len(one.names) == 1]
+        return [
+            one
+            for one in singles
+            if cost_of(one) < close and self._refiner.candidates[one.names[0]].kind not in kind
+        ]
 
     def _lead_everywhere(self) -> None:
         """Each cause of what explains to the noise, and its kin, in all places alike.
