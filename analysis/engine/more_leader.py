@@ -1,7 +1,8 @@
 """One cause more beside what was led to the ring's phase, and one less."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import log
 
 import numpy as np
 
@@ -9,9 +10,11 @@ from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
     farthest_first,
+    noise_of,
     rise_beside_form,
 )
-from analysis.engine.faint import Faint
+from analysis.engine.candidate import Candidate
+from analysis.engine.faint import FORMS, Faint
 from analysis.engine.faint_search import eased_by, nuisances_of, one_more, promised_by
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
@@ -22,7 +25,7 @@ from analysis.engine.ring_fit import BEHIND, FAR
 from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
-from analysis.engine.way import STRAIN
+from analysis.engine.way import LEAVES, STRAIN
 from analysis.engine.whole import whole_beside
 
 MORE = 2
@@ -40,6 +43,9 @@ CLOSE = 60.0
 
 AS_CLOSE = 6
 """So many of several causes are led without each of these."""
+
+LEAST_LEFT = 1e-3
+"""A promise is never to explain all but less than this share."""
 
 FAR_BEHIND = 15.0
 """What promises to stay this far behind is not led to the phase."""
@@ -149,9 +155,10 @@ class MoreLeader(RivalLeader):
         """Whether one cause more, as promised, would count beside the error of form that is left.
 
         What explains little of what a law of friction leaves is lost in how wrong that law may be,
-        and to lead it is in vain; what explains all of it shows that the law was right. Where
-        parameters are bent far, they make up for some of it, and this is not asked. All of it is
-        what is left of the stretch that promises it.
+        and to lead it is in vain; what explains all of it shows that the law was right, and what
+        explains most of it has the shape of no error by chance. Where parameters are bent far, they
+        make up for some of it, and this is not asked. All of it is what is left of the stretch that
+        promises it.
         """
         known, left = self._refiner.candidates, found.seen.residual
         falls = promised_by(found, self._refiner, scored)
@@ -161,6 +168,10 @@ class MoreLeader(RivalLeader):
         explains = max(falls - eased, 0.0)
         rise = rise_beside_form(self._refiner, best, self._nothing, count, explains)
         rise += 0.5 * min(eased, falls)
+        beyond = best.misfit - noise_of(self._system) * count
+        if beyond > LEAVES * float(np.sqrt(2.0 * count)):
+            numbers = _numbers_added(self._best, scored, known)
+            rise = max(rise, _by_chance(falls / beyond, numbers))
         on = Hypothesis() if best.state is None else best.state.hypothesis
         costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
         return GENEROUS * rise > costs
@@ -214,3 +225,24 @@ class MoreLeader(RivalLeader):
             self._keep(found)
         else:
             self._lead(law.nuisance, State.of(scored, self._refiner.candidates), near=False)
+
+
+def _by_chance(share: float, numbers: int) -> float:
+    """How unlikely it is that so much of an error of form lies where a cause does, as a logarithm.
+
+    As `weights` has it: in any of `FORMS` directions, of unknown size.
+
+    Parameters
+    ----------
+    share
+        Of what is left beyond noise, what the cause explains.
+    numbers
+        Of the cause.
+    """
+    return -0.5 * max(FORMS - numbers, 0) * log(max(1.0 - share, LEAST_LEFT))
+
+
+def _numbers_added(on: Followed, scored: Scored, candidates: Mapping[str, Candidate]) -> int:
+    """Magnitudes of what is promised beside what is on."""
+    added = set(scored.hypothesis.names) - set(on.names)
+    return sum(len(scored.hypothesis.parts[one].groups(candidates[one])) for one in added)
