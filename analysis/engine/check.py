@@ -17,7 +17,7 @@ from analysis.engine.part import rings
 from analysis.engine.recorded import check_bundles, looked_at, name_of
 from analysis.engine.stated import check_candidates, check_lists, check_nuisances
 from analysis.engine.system import Point, Prediction, System
-from analysis.engine.unlikely import elsewhere, rounded, unlikely
+from analysis.engine.unlikely import elsewhere, missing_of, rounded, unknown_kin, unlikely
 from cdpr8.errors import DataError
 
 LEAST_CHANGE = 1e-12
@@ -67,10 +67,15 @@ def check(system: System) -> tuple[str, ...]:
             where="simulate",
             remedy="draw no random numbers, keep no state, and hand `reduce` arrays of their own",
         )
-    odd = unlikely(system.bundles, found)
+    odd = (*missing_of(system), *unlikely(system.bundles, found))
     if rings(system):
         return odd
-    return (*odd, *elsewhere(system.bundles, found), *_each(system, nominal, found))
+    return (
+        *unknown_kin(system.candidates),
+        *odd,
+        *elsewhere(system.bundles, found),
+        *_each(system, nominal, found),
+    )
 
 
 def _each(system: System, nominal: Point, at: Prediction) -> tuple[str, ...]:
@@ -176,6 +181,12 @@ def _check_prediction(bundles: Sequence[Bundle], found: Any, what: str) -> None:
             remedy="hand `reduce` a list of arrays of shape (samples, channels)",
         )
     for i, (bundle, seen) in enumerate(zip(bundles, found, strict=True)):
+        if not isinstance(seen, np.ndarray):
+            raise DataError(
+                f"the simulation of {what} holds a {type(seen).__name__}", allowed="an array",
+                where=f"simulate, {name_of(bundle, i)}",
+                remedy="hand `reduce` a list of arrays, np.asarray(...) each",
+            )  # fmt: skip
         shape = np.shape(seen)
         if shape != bundle.value.shape:
             raise DataError(

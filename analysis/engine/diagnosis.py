@@ -15,15 +15,15 @@ from analysis.engine.doubt import FORMS_OFF, missed
 from analysis.engine.finder import Tell
 from analysis.engine.implausible import Implausible, implausible
 from analysis.engine.judge import Judgement, judge
+from analysis.engine.leftover import leftover
 from analysis.engine.locate import Finding, locate
 from analysis.engine.look import look
-from analysis.engine.louder import coloured
 from analysis.engine.moved import EVEN
 from analysis.engine.part import records_of, rings
 from analysis.engine.reach import Unreached, unreached
 from analysis.engine.restated import restatements
 from analysis.engine.search import REMAINS_ALONE, Search, search
-from analysis.engine.summary import summary
+from analysis.engine.summary import place_of, summary
 from analysis.engine.system import Nuisance, System
 from cdpr8.errors import UsageError
 
@@ -42,16 +42,22 @@ MOVED = (
     "is named where it is a candidate's, which `Nuisance.cause` and `term` say"
 )
 
-COLOURED = (
-    "the noise of {name!r} is not white: from one sample to the next it is {times:.2f} times what "
-    "is stated, and so there is more of it in what is slow. A slow cause may be no more than that"
-)
-
 BESIDE = (
     "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it beside what is named: "
     "{cause} may be there as well, and these data do not make it sure"
 )
 
+ALONE = (
+    "nuisance {name!r} fits {sigmas:+.1f} sigmas from what is known of it: {cause} may be there, "
+    "and these data do not make it sure"
+)
+
+LEAST_CHANCE = 1e-6
+"""Where nothing is named, what noise makes anywhere with a smaller chance than this is said."""
+
+DIFFERS = (
+    "{place}: noise makes that with a chance of {chance:.0e}, and nothing in the list explains it"
+)
 
 FORETOLD, EVEN_ODDS = 1.05, 0.5
 """Held-out data that are off by so much more, as an amplitude, with what is named than without it
@@ -182,7 +188,7 @@ def diagnose(
     )  # fmt: skip
     far = [] if rings(system) else _moved_far(system, judgement)
     for one, sigmas in far:
-        words = MOVED if one.cause is None else BESIDE
+        words = MOVED if one.cause is None else BESIDE if judgement.causes else ALONE
         notes = (*notes, words.format(name=one.name, sigmas=sigmas, cause=one.cause))
     notes = (*notes, *(one.note for one in beyond))
     if (judgement.causes and far) or _may_be(beyond, judgement):
@@ -190,9 +196,10 @@ def diagnose(
     remains = _remains(searched, judgement, noise)
     if remains.significant and judgement.verdict == "none":
         judgement = replace(judgement, verdict="unexplained")
-    if not remains.significant:
-        for name, times in coloured(system, judgement.chosen.point).items():
-            notes = (*notes, COLOURED.format(name=name, times=times))
+    if judgement.verdict == "none" and not rings(system):
+        notes = (*notes, *_differs(remains.findings))
+    chosen = judgement.chosen.point
+    notes = (*notes, *leftover(system, chosen, explained=not remains.significant))
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
     for kind, before, after in () if proof is None else _worse(proof):
         notes = (*notes, WORSE.format(kind=kind or "it", before=before, after=after))
@@ -226,14 +233,21 @@ def _worse(proof: Confirmation) -> Iterator[tuple[str, float, float]]:
             yield kind, before[kind], after
 
 
+def _differs(findings: Sequence[Finding]) -> Iterator[str]:
+    """Where more than noise is left, though it is no more than noise on average."""
+    for one in findings[:1]:
+        if one.significance < LEAST_CHANCE:
+            yield DIFFERS.format(place=place_of(one), chance=one.significance)
+
+
 def _moved_far(system: System, judgement: Judgement) -> list[tuple[Nuisance, float]]:
-    """Parameters that moved too far, and by how many sigmas: no candidate's, or beside others."""
+    """Parameters that moved too far, and by how many sigmas: of no cause that is named."""
     named = {one.name for one in judgement.causes}
     at = judgement.chosen.point.nuisance
     return [
         (one, float(sigmas))
         for one, sigmas in zip(system.nuisances, at, strict=True)
-        if abs(sigmas) > EVEN and (one.cause is None or (named and one.cause not in named))
+        if abs(sigmas) > EVEN and one.cause not in named
     ]
 
 

@@ -13,7 +13,7 @@ from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
 from analysis.engine.doubt import doubt_beside, hardly_explains
 from analysis.engine.fitted import Fitted
 from analysis.engine.moved import rise_of
-from analysis.engine.weights import TEMPER_EXACT, weights_of
+from analysis.engine.weights import temper_of, weights_of
 
 NEGLIGIBLE, STANDS_OUT = 0.02, 15.0
 """A magnitude below this share of its usual size is nothing, unless with it the score is so much
@@ -146,7 +146,7 @@ def judge(
         hardly = [hardly_explains(one, null) for one in fitted]
         scores[np.logical_or(idle, hardly)] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
-    scores = _moved(scores, fitted, moved or {}, nothing)
+    scores = _moved(scores, fitted, candidates, moved or {}, nothing)
     weights = weights_of(scores, fitted, candidates, nothing, noise, settled=settled)
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
@@ -190,7 +190,11 @@ def judge(
 
 
 def _moved(
-    scores: Array, fitted: Sequence[Fitted], moved: Mapping[str, float], nothing: float
+    scores: Array,
+    fitted: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
+    moved: Mapping[str, float],
+    nothing: float,
 ) -> Array:
     """Scores, numbers that nothing has moved too far as likely as that says.
 
@@ -199,7 +203,10 @@ def _moved(
     """
     names = [one.hypothesis.names for one in fitted]
     far = {i: moved[one[0]] for i, one in enumerate(names) if len(one) == 1 and one[0] in moved}
-    raised = {i: nothing + rise_of(sigmas, TEMPER_EXACT) for i, sigmas in far.items()}
+    raised = {
+        i: nothing + rise_of(sigmas, temper_of(candidates[names[i][0]].form_share))
+        for i, sigmas in far.items()
+    }
     found = scores.copy()
     for i, score in raised.items():
         found[i] = max(scores[i], score)

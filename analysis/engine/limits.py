@@ -18,7 +18,7 @@ from analysis.engine.faint import Faint
 from analysis.engine.hypothesis import LOG_ODDS, Part, part_log_prior
 from analysis.engine.screen import limits as bounds
 from analysis.engine.screen import magnitude
-from analysis.engine.weights import EXACT, TEMPER, TEMPER_EXACT
+from analysis.engine.weights import temper_of
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def _size(candidate: Candidate, looks: Sequence[Array], group: tuple[str, ...]) 
     What one unit of each tells beside parameters, squared, in sigmas: a matrix for each look.
     """
     cost = -part_log_prior(candidate, Part(group, len(group) > 1), moved=False)
-    temper = TEMPER_EXACT if candidate.form_share < EXACT else TEMPER
+    temper = temper_of(candidate.form_share)
     sigmas = float(np.sqrt(2.0 * (cost - LOG_ODDS * (temper - 1.0))))
     pick = [k for k, one in enumerate(candidate.terms) if one.name in group]
     least = min(float(one[np.ix_(pick, pick)].sum()) for one in looks)

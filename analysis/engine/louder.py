@@ -36,10 +36,6 @@ OFTEN = 3.0
 """Variances that were taken from few samples are told anew where, together, they are off by more
 than chance, by so many standard deviations."""
 
-COLOURED, ALL = 0.5, 1.5
-"""Of what is left, white noise holds less than the first where it is coloured; of what is more than
-the second, it may be something left out."""
-
 SAME = 4.0
 """Differences of both orders tell the same to within so many standard deviations."""
 
@@ -50,7 +46,7 @@ LEAST_SAMPLES = 50
 """That a channel needs."""
 
 LOUDER = (
-    "the noise of samples is {least:.2f} to {most:.2f} times what is stated: what is left is as "
+    "the noise of samples is {times} times what is stated: what is left is as "
     "rough as that from one sample to the next, as no physics is, and it is counted as noise"
 )
 
@@ -95,7 +91,8 @@ class Louder(Restated):
     @property
     def note(self) -> str:
         """See `Restated`."""
-        return LOUDER.format(least=self.times.min(), most=self.times.max())
+        ends = [f"{one:.2f}" for one in (self.times.min(), self.times.max())]
+        return LOUDER.format(times=" to ".join(dict.fromkeys(ends)))
 
 
 def louder_than_stated(system: System, point: Point) -> Louder | None:
@@ -146,7 +143,7 @@ def _told(bundle: Bundle, seen: Array) -> _Told:
     count = int(np.sum([one.holds(bundle.t_s) for one in bundle.segments if not one.sealed]))
     if bundle.jitter is not None or count < LEAST_SAMPLES:
         return as_stated
-    rough, fourth = (_roughness(bundle, seen, one) for one in ORDERS)
+    rough, fourth = (roughness(bundle, seen, one) for one in ORDERS)
     freedom = count / WORTH
     same = np.abs(fourth - rough) < SAME * np.sqrt(2.0 / count) * rough
     if bundle.noise_from:
@@ -161,40 +158,18 @@ def _told(bundle: Bundle, seen: Array) -> _Told:
     return _Told(times, known_from, np.zeros(0), is_off=bool(is_off.any()))
 
 
-def _roughness(bundle: Bundle, seen: Array, order: int) -> Array:
-    """The variance of noise by differences, over what is stated, shape (channels,)."""
+def roughness(bundle: Bundle, seen: Array, order: int = ORDERS[0]) -> Array:
+    """The variance of noise by differences, over what is stated, shape (channels,).
+
+    Parameters
+    ----------
+    bundle, seen
+        What was recorded, and what is simulated of it, shape (n, channels).
+    order
+        Of the differences.
+    """
     left = (bundle.value - seen) / sigmas_of(bundle)
     pieces = [left[one.holds(bundle.t_s)] for one in bundle.segments if not one.sealed]
     rough = np.concatenate([np.diff(one, order, axis=0) for one in pieces])
     rough = rough[np.isfinite(rough).all(axis=1)]
     return np.mean(rough**2, axis=0) / SQUARES[order] if len(rough) else np.ones(left.shape[1])
-
-
-def coloured(system: System, point: Point) -> dict[str, float]:
-    """Channels whose noise is not white: what is left of them goes on from one sample to the next.
-
-    Parameters
-    ----------
-    system
-        What is simulated.
-    point
-        With which no more than noise is left.
-
-    Returns
-    -------
-    dict
-        Channel -> sigma of the white noise that it has, over what is stated.
-    """
-    (predicted,) = system.simulate([point], list)
-    found = {}
-    for bundle, seen in zip(system.bundles, predicted, strict=True):
-        held = [one.holds(bundle.t_s) for one in bundle.segments if not one.sealed]
-        if int(np.sum(held)) < LEAST_SAMPLES:
-            continue
-        left = ((bundle.value - seen) / sigmas_of(bundle))[np.any(held, axis=0)]
-        whole = np.nanmean(left**2, axis=0)
-        rough = _roughness(bundle, seen, ORDERS[0])
-        for name, every, white in zip(bundle.names, whole, rough, strict=True):
-            if white < COLOURED * every < COLOURED * ALL:
-                found[name] = float(np.sqrt(white))
-    return found

@@ -75,6 +75,14 @@ def _check_form(bundle: Bundle, where: str) -> None:
             f"t_s has shape {count}, value {np.shape(bundle.value)}", allowed="(n,) and (n, m)",
             where=where, remedy="of one channel, value[:, None]",
         )  # fmt: skip
+    for what in ("t_s", "value"):
+        held = getattr(bundle, what)
+        if np.ma.isMaskedArray(held) or not _real(held):
+            kind = "a masked array" if np.ma.isMaskedArray(held) else f"an array of {held.dtype}"
+            raise DataError(
+                f"{what} is {kind}", allowed="an array of real numbers", where=where,
+                remedy="np.asarray(..., dtype=float); what is not known is NaN, in no segment",
+            )  # fmt: skip
     channels = bundle.value.shape[1]
     if len(bundle.value) != len(bundle.t_s):
         raise DataError(
@@ -87,10 +95,21 @@ def _check_form(bundle: Bundle, where: str) -> None:
                 f"{what} is {names!r}", allowed=f"a tuple of {channels}, one for each channel",
                 where=where, remedy='of one channel, ("x",)',
             )  # fmt: skip
+    twice = sorted({one for one in bundle.names if list(bundle.names).count(one) > 1})
+    if twice:
+        raise DataError(
+            f"more than one channel is called {listed(twice)}", allowed="names that differ",
+            where=where, remedy="rename one: what is found is told by the channel's name",
+        )  # fmt: skip
     _check_times(np.asarray(bundle.t_s, dtype=float), where)
     check_number("base_share", bundle.base_share, where, least=0.0, most=1.0)
     for tone_hz in bundle.tones_hz:
         check_number("a tone of tones_hz", tone_hz, where, above=0.0)
+
+
+def _real(held: Any) -> bool:
+    """Whether an array holds real numbers."""
+    return np.issubdtype(held.dtype, np.floating) or np.issubdtype(held.dtype, np.integer)
 
 
 def _check_times(t_s: Any, where: str) -> None:

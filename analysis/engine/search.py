@@ -147,9 +147,11 @@ def search(
     if isinstance(system, Sharper):
         found = found._replace(fitted=_as_stated(found.fitted, system.told))
     alone = next((one for one in found.fitted if not one.hypothesis.parts), null)
-    moved = _moved(system, alone) if found.faint else {}
+    moved = _moved(system, alone) if found.faint or not rings(system) else {}
     named = {one.hypothesis.names for one in found.fitted}
-    more = [released(refiner, alone, name) for name in moved if (name,) not in named]
+    # What does not ring has every single cause among its hypotheses.
+    left = [name for name in moved if (name,) not in named and rings(system)]
+    more = [released(refiner, alone, name) for name in left]
     fitted = (*found.fitted, *more)
     limits = () if found.alone is None else limits_of(found.alone, refiner.candidates)
     return Search(

@@ -106,6 +106,11 @@ def check_candidates(candidates: Sequence[Candidate]) -> None:
         names = [term.name for term in one.terms]
         _check_unique(names, "term", where)
         _check_unique([shape.name for shape in one.shapes], "shape", where)
+        if isinstance(one.akin, str):
+            raise DataError(
+                f"akin is {one.akin!r}", allowed="a tuple of names", where=where,
+                remedy="of one, (it,) with the comma",
+            )  # fmt: skip
         check_number("form_share", one.form_share, where, least=0.0, most=1.0)
         check_number("prior", one.prior, where, above=0.0)
         unknown = sorted({term for whole in one.combinations for term in whole} - set(names))

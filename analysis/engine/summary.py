@@ -42,7 +42,7 @@ def _lines(found: "Diagnosis") -> Iterator[str]:
         yield from _proof(found.confirmation)
     findings = found.findings if found.remains is None else found.remains.findings
     if findings and (found.remains is None or found.remains.significant):
-        yield f"  differs most in {_place(findings[0])}"
+        yield f"  differs most in {place_of(findings[0])}"
     yield from (f"  note: {one}" for one in found.notes)
 
 
@@ -81,7 +81,7 @@ def _proof(proof: Confirmation) -> Iterator[str]:
             yield f"  rms over noise, {what}: {before:.3g} before, {after:.3g} after"
 
 
-def _place(one: Finding) -> str:
+def place_of(one: Finding) -> str:
     """Where, and by how much."""
     channel = " of ".join(part for part in (one.channel, one.record) if part)
     where = f"{one.start_s:g} to {one.end_s:g} s"

@@ -10,8 +10,9 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
+from analysis.engine.candidate import Candidate
 from analysis.engine.recorded import looked_at, name_of
-from analysis.engine.system import Prediction
+from analysis.engine.system import Prediction, System
 from analysis.engine.whiten import sigmas_of
 
 LEAST_SAMPLES = 10
@@ -118,6 +119,32 @@ def _away(one: _Channel) -> Iterator[str]:
             f"{abs(off) / varies:.0f} times what either varies by. Both are taken to be in the "
             "unit that is stated, from the same zero"
         )
+
+
+def missing_of(system: System) -> tuple[str, ...]:
+    """What a system states nothing of, a sentence for each: candidates, data to be held out."""
+    found = []
+    if not len(system.candidates):
+        found.append("the list of candidates is empty: whatever differs, nothing can be named")
+    held = [(bundle, one) for bundle in system.bundles for one in bundle.segments if one.held_out]
+    if held and not any(one.holds(bundle.t_s).any() for bundle, one in held):
+        bundle, one = held[0]
+        found.append(
+            f"nothing is held out: segment {one.name!r}, from {one.start_s:g} to {one.end_s:g} s, "
+            f"holds none of the samples from {bundle.t_s[0]:g} to {bundle.t_s[-1]:g} s"
+        )
+    return tuple(found)
+
+
+def unknown_kin(candidates: Sequence[Candidate]) -> tuple[str, ...]:
+    """Names in `akin` that are no candidate's, a sentence for each."""
+    names = {one.name for one in candidates}
+    return tuple(
+        f"candidate {one.name!r}: akin names {other!r}, of which there is none in the list"
+        for one in candidates
+        for other in one.akin
+        if other not in names
+    )
 
 
 def rounded(bundles: Sequence[Bundle], simulated: Sequence[Prediction]) -> tuple[str, ...]:

@@ -45,6 +45,11 @@ SIMPLER, MOST_SHAPES = 0.7, 2
 where a hose is tied on makes it no other law."""
 
 
+def temper_of(form: float) -> float:
+    """By which factor scores count for less at least, by the error of form of what is on."""
+    return TEMPER_EXACT if form < EXACT else TEMPER
+
+
 def weights_of(
     scores: Array,
     fitted: Sequence[Fitted],
@@ -71,8 +76,7 @@ def weights_of(
     """
     best = fitted[int(np.argmax(scores))]
     form = max((candidates[name].form_share for name in best.hypothesis.names), default=0.0)
-    least = TEMPER_EXACT if form < EXACT else TEMPER
-    temper = max(least, TEMPER_SHARE * form**2 * float(scores.max() - nothing))
+    temper = max(temper_of(form), TEMPER_SHARE * form**2 * float(scores.max() - nothing))
     if np.isfinite(best.left):
         times = max((best.left - 1.0) / (noise - 1.0), 1.0)
         temper = min(temper, MOST_AT_NOISE * times**2)
