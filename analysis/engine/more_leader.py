@@ -171,7 +171,7 @@ class MoreLeader(RivalLeader):
         beyond = best.misfit - noise_of(self._system) * count
         if beyond > LEAVES * float(np.sqrt(2.0 * count)):
             numbers = _numbers_added(self._best, scored, known)
-            rise = max(rise, _by_chance(falls / beyond, numbers))
+            rise = max(rise, by_chance(falls / beyond, numbers))
         on = Hypothesis() if best.state is None else best.state.hypothesis
         costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
         return GENEROUS * rise > costs
@@ -227,7 +227,7 @@ class MoreLeader(RivalLeader):
             self._lead(law.nuisance, State.of(scored, self._refiner.candidates), near=False)
 
 
-def _by_chance(share: float, numbers: int) -> float:
+def by_chance(share: float, numbers: int) -> float:
     """How unlikely it is that so much of an error of form lies where a cause does, as a logarithm.
 
     As `weights` has it: in any of `FORMS` directions, of unknown size.
@@ -239,7 +239,7 @@ def _by_chance(share: float, numbers: int) -> float:
     numbers
         Of the cause.
     """
-    return -0.5 * max(FORMS - numbers, 0) * log(max(1.0 - share, LEAST_LEFT))
+    return 0.5 * max(FORMS - numbers, 0) * -log(max(1.0 - share, LEAST_LEFT))
 
 
 def _numbers_added(on: Followed, scored: Scored, candidates: Mapping[str, Candidate]) -> int:

@@ -123,7 +123,7 @@ def follow_ring(
         share=float(share),
         left=left,
         telling=float(next((one[1] for one in lefts if one[0] > TELLING), lefts[-1][1])),
-        about=about if share < 1.0 or left > FAINT or _far(way.at) else None,
+        about=about if share < 1.0 or left > FAINT or is_far(way.at) else None,
         misfit=float(way.here @ way.here),
         roughness=samples.roughness(way.here),
         effort=samples.effort,
@@ -131,6 +131,12 @@ def follow_ring(
     )
 
 
-def _far(at: Followed) -> bool:
-    """Whether parameters are so far from what is known of them that something else is there."""
+def is_far(at: Followed) -> bool:
+    """Whether parameters are so far from what is known of them that something else is there.
+
+    Parameters
+    ----------
+    at
+        Where they were led, nothing left out.
+    """
     return at.strain > FAR or (at.is_bent and at.strain > STRAIN)

@@ -18,7 +18,7 @@ from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.lens import Lens
 from analysis.engine.look import look
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import FAINT, follow_ring
+from analysis.engine.ring_fit import FAINT, follow_ring, is_far
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sharpen import sharpened
 from analysis.engine.state import Number, State
@@ -284,3 +284,12 @@ def test_starts_are_told_from_each_other() -> None:
     assert not state_of(DAMPING, 0.2).is_about(state_of(DAMPING, 0.4))
     assert not state_of(DAMPING, 0.2).is_about(state_of(STEP, 0.2, moment=9.0))
     assert not state_of(STEP, 0.2, moment=9.0).is_about(state_of(STEP, 0.2, moment=9.5))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "sigmas", "far"), [(100, 1.05, True), (100, 0.95, False), (20, 1.9, False)]
+)
+def test_parameters_are_bent_by_more_than_a_sigma_each_and_by_more_than_a_few_together(
+    numbers: int, sigmas: float, far: bool
+) -> None:
+    assert is_far(Followed(np.full(numbers, sigmas), None)) is far
