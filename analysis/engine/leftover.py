@@ -26,7 +26,7 @@ COLOURED = (
     "is stated, and so there is more of it in what is slow. A slow cause may be no more than that"
 )
 
-QUIET = 0.5
+QUIET = 0.35
 """Noise that leaves less than this of its stated variance is stated too large."""
 
 HIDDEN = (
