@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from analysis.engine.array import Array
-from analysis.engine.bundle import Bundle
+from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.part import Part, records_of, rings
@@ -44,11 +44,14 @@ class Confirmation:
         residual over the noise.
     held_record
         The recording that was kept back whole; "" where there are too few.
+    held_values
+        Kind of channel -> how many values are held out.
     """
 
     before: Mapping[str, Mapping[str, float]]
     after: Mapping[str, Mapping[str, float]]
     held_record: str
+    held_values: Mapping[str, int]
 
 
 def confirm(search: Search, chosen: Fitted) -> Confirmation:
@@ -90,7 +93,7 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
             again = search.refiner.settle(search.refiner.again(chosen, _used(search, held)))
         nuisance = again.point.nuisance if part is None else part.own(again.point.nuisance)
         after = _errors(system, nuisance, again.state, held, near=search.faint)
-    return Confirmation(before, after, held)
+    return Confirmation(before, after, held, _held_values(system.bundles, held))
 
 
 def _parameters_alone(search: Search, used: NDArray[np.bool_]) -> Array:
@@ -198,15 +201,30 @@ def sample_errors(system: System, point: Point, held: str = "") -> dict[str, dic
     for bundle, residual in zip(system.bundles, residuals, strict=True):
         for segment in bundle.segments:
             inside = segment.holds(bundle.t_s)
-            away = segment.held_out or segment.sealed
-            away = away or (held != "" and bundle.record == held and segment.name != "rest")
             if inside.any():
-                part = sums["held_out" if away else "used"]
+                part = sums["held_out" if _is_away(bundle, segment, held) else "used"]
                 part.setdefault(bundle.kind, []).append(residual[inside].reshape(-1) ** 2)
     return {
         part: {kind: float(np.sqrt(np.concatenate(all_).mean())) for kind, all_ in kinds.items()}
         for part, kinds in sums.items()
     }
+
+
+def _is_away(bundle: Bundle, segment: Segment, held: str) -> bool:
+    """Whether what a segment holds was not fitted to."""
+    kept_back = held != "" and bundle.record == held and segment.name != "rest"
+    return segment.held_out or segment.sealed or kept_back
+
+
+def _held_values(bundles: Sequence[Bundle], held: str) -> dict[str, int]:
+    """Kind of channel -> how many values are held out."""
+    found: dict[str, int] = {}
+    for bundle in bundles:
+        for segment in bundle.segments:
+            if _is_away(bundle, segment, held):
+                count = int(segment.holds(bundle.t_s).sum()) * bundle.value.shape[1]
+                found[bundle.kind] = found.get(bundle.kind, 0) + count
+    return found
 
 
 def whitened(bundles: Sequence[Bundle], prediction: list[Array]) -> list[Array]:

@@ -201,7 +201,8 @@ def diagnose(
     chosen = judgement.chosen.point
     notes = (*notes, *leftover(system, chosen, explained=not remains.significant))
     proof = None if stop_after == "name" else confirm(searched, judgement.chosen)
-    for kind, before, after in () if proof is None else _worse(proof):
+    numbers = len(judgement.chosen.state.free) + (len(system.nuisances) if rings(system) else 0)
+    for kind, before, after in () if proof is None else _worse(proof, numbers):
         notes = (*notes, WORSE.format(kind=kind or "it", before=before, after=after))
         judgement = _unsure(judgement, even=True)
     flagged = implausible(searched, judgement.chosen)
@@ -225,12 +226,18 @@ def _may_be(beyond: Sequence[Unreached], judgement: Judgement) -> bool:
     return bool(named) and any(one.usual and one.candidate not in {"", *named} for one in beyond)
 
 
-def _worse(proof: Confirmation) -> Iterator[tuple[str, float, float]]:
-    """Kinds of channels that were foretold better with nothing left out: before and after."""
-    before = proof.before.get("held_out", {})
-    for kind, after in proof.after.get("held_out", {}).items():
-        if after > FORETOLD * before.get(kind, np.inf):
-            yield kind, before[kind], after
+def _worse(proof: Confirmation, numbers: int) -> Iterator[tuple[str, float, float]]:
+    """Kinds of channels that were foretold better with nothing left out: before and after.
+
+    By more than numbers are off that were told by the used part alone, one of variance each: where
+    something rings, those of nothing have seen all of the data.
+    """
+    held = proof.before.get("held_out", {}), proof.after.get("held_out", {})
+    for kind in held[0].keys() & held[1].keys():
+        before, after = (one[kind] for one in held)
+        more = proof.held_values[kind] * (after**2 - before**2) / max(before, 1.0) ** 2
+        if after > FORETOLD * before and more > numbers:
+            yield kind, before, after
 
 
 def _differs(findings: Sequence[Finding]) -> Iterator[str]:
