@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate
 from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
-from analysis.engine.doubt import doubt_beside, hardly_explains
+from analysis.engine.doubt import doubt_beside, doubt_of, hardly_explains
 from analysis.engine.fitted import Fitted
 from analysis.engine.moved import rise_of
 from analysis.engine.weights import temper_of, weights_of
@@ -32,34 +32,11 @@ UNKNOWN = 0.05
 """No cause is told as surer than this leaves it. Of 168 that were as sure as could be, in blind
 sets by two plants, 9 % were not there (5 to 14 %): what no hypothesis says, no score doubts."""
 
-NOISE, DOUBTFUL = 1.06, 8.0
-"""The squared misfit of a sample that noise allows where it is known, and simulators; and
-how much more leaves it even whether what explains best is what is there, for one whose law has this
-for an error of form: what is known exactly must explain to the noise."""
-
-SUREST = 0.4
-"""As much more leaves it even where a law has no error of form."""
-
-SLIGHT = 0.1
-"""What is left of all that parameters alone leave, as an amplitude, and is less than this share of
-a law's error of form, that form leaves: the less, the less doubt."""
-
-MOST_DOUBT = 0.6
-"""What was led to the ring's phase and is far from the noise is more often wrong than right."""
+NOISE = 1.06
+"""The squared misfit of a sample that noise allows where it is known, and simulators."""
 
 DOUBT_ASIDE = 0.5
 """Of the share of recordings that what is on could not be led through, this much is doubt."""
-
-DOUBT_A_CAUSE = 0.2
-"""Where no simulation can be led to the ring's phase, lines alone speak: for each cause that they
-need, this is the doubt. One cause that explains all lines is mostly the right one; three are what a
-missing law is made up of."""
-
-
-EVEN_OF_LINES = 15.0
-"""There, what leaves so many times more of lines than noise and the error of form is as likely
-something else."""
-
 
 MANY, ELSE = 4, 0.5
 """A cause of which more numbers than this were chosen out of many, such as a dozen coordinates of
@@ -216,42 +193,6 @@ def _moved(
         # What is so small that it is none has no evidence of its own.
         found[others] += found[first] - (scores[first] if np.isfinite(scores[first]) else nothing)
     return found
-
-
-def doubt_of(
-    fitted: Fitted,
-    candidates: Mapping[str, Candidate],
-    *,
-    lost: bool,
-    noise: float = NOISE,
-    alone: float = np.nan,
-) -> float:
-    """The probability that what explains best is not what is there, by what it leaves.
-
-    Parameters
-    ----------
-    fitted
-        What explains best.
-    candidates
-        By name.
-    lost
-        Whether it could not be led to the ring's phase.
-    noise
-        The squared misfit of a sample that noise leaves.
-    alone
-        That which parameters alone leave; NaN: not known.
-    """
-    if lost:
-        doubt = min(DOUBT_A_CAUSE * len(fitted.hypothesis.parts), MOST_DOUBT)
-        return 1.0 - (1.0 - doubt) / (1.0 + max(fitted.lines_left - 1.0, 0.0) / EVEN_OF_LINES)
-    if np.isnan(fitted.left):
-        return 0.0
-    form = max((candidates[name].form_share for name in fitted.hypothesis.names), default=0.0)
-    more = max(fitted.left - noise, 0.0)
-    beyond = more / max(DOUBTFUL * form, SUREST)
-    if more < (SLIGHT * form) ** 2 * (alone - noise):
-        beyond *= float(np.sqrt(more / (alone - noise))) / (SLIGHT * form)
-    return min(beyond / (1.0 + beyond), MOST_DOUBT)
 
 
 def _by_itself(cause: Cause, chosen: Fitted, candidate: Candidate) -> float:

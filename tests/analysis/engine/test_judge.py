@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from analysis.engine.candidate import Candidate, Term
+from analysis.engine.doubt import DOUBT_A_CAUSE
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.judge import (
     CERTAIN,
-    DOUBT_A_CAUSE,
     NEGLIGIBLE,
     NOISE,
     SECOND,
