@@ -4,16 +4,13 @@ Noise that goes on from one sample to the next looks like causes that are slow; 
 too large hides what is small; and one sample that is far off is nothing that any law explains.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.engine.array import Array
-from analysis.engine.bundle import Segment
 from analysis.engine.louder import LEAST_SAMPLES, roughness
-from analysis.engine.recorded import looked_at
 from analysis.engine.system import Point, System
 from analysis.engine.whiten import sigmas_of
 
@@ -68,9 +65,10 @@ def leftover(system: System, point: Point, *, explained: bool) -> tuple[str, ...
     (predicted,) = system.simulate([point], list)
     found: list[str] = []
     for bundle, seen in zip(system.bundles, predicted, strict=True):
-        inside = looked_at(bundle) & ~_sealed(bundle.t_s, bundle.segments)
-        if int(inside.sum()) < LEAST_SAMPLES:
+        held = [one.holds(bundle.t_s) for one in bundle.segments if not one.sealed]
+        if int(np.sum(held)) < LEAST_SAMPLES:
             continue
+        inside = np.any(held, axis=0)
         left, white = (bundle.value - seen) / sigmas_of(bundle), roughness(bundle, seen)
         for k, name in enumerate(bundle.names):
             one = _Left(name, bundle.t_s[inside], left[inside, k], float(white[k]))
@@ -95,10 +93,3 @@ def _outliers(one: _Left) -> Iterator[str]:
         yield ODD.format(
             count=len(far), of=len(size), name=one.name, t_s=one.t_s[far[0]], sigmas=size[far[0]]
         )
-
-
-def _sealed(t_s: Array, segments: Sequence[Segment]) -> NDArray[np.bool_]:
-    found = np.zeros(len(t_s), dtype=bool)
-    for one in segments:
-        found |= one.sealed & one.holds(t_s)
-    return found

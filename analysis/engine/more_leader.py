@@ -1,8 +1,7 @@
 """One cause more beside what was led to the ring's phase, and one less."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from math import log
 
 import numpy as np
 
@@ -13,8 +12,7 @@ from analysis.engine.all_samples import (
     noise_of,
     rise_beside_form,
 )
-from analysis.engine.candidate import Candidate
-from analysis.engine.faint import FORMS, Faint
+from analysis.engine.faint import Faint
 from analysis.engine.faint_search import eased_by, nuisances_of, one_more, promised_by
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
@@ -26,6 +24,7 @@ from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
 from analysis.engine.way import LEAVES, STRAIN
+from analysis.engine.weights import log_chance, numbers_of
 from analysis.engine.whole import whole_beside
 
 MORE = 2
@@ -56,9 +55,6 @@ class MoreLeader(RivalLeader):
 
     Parameters are those of `Leader`.
     """
-
-    def _kinds(self, names: Sequence[str]) -> set[str]:
-        return {self._refiner.candidates[name].kind for name in names}
 
     def _one_more(self, beside: Followed | None = None) -> bool:
         """Try one cause more beside the best, or beside another; whether that leads farther."""
@@ -168,11 +164,11 @@ class MoreLeader(RivalLeader):
         explains = max(falls - eased, 0.0)
         rise = rise_beside_form(self._refiner, best, self._nothing, count, explains)
         rise += 0.5 * min(eased, falls)
+        on = Hypothesis() if best.state is None else best.state.hypothesis
         beyond = best.misfit - noise_of(self._system) * count
         if beyond > LEAVES * float(np.sqrt(2.0 * count)):
-            numbers = _numbers_added(self._best, scored, known)
+            numbers = numbers_of(scored.hypothesis, known) - numbers_of(on, known)
             rise = max(rise, by_chance(falls / beyond, numbers))
-        on = Hypothesis() if best.state is None else best.state.hypothesis
         costs = on.log_prior(known) - scored.hypothesis.log_prior(known)
         return GENEROUS * rise > costs
 
@@ -230,8 +226,6 @@ class MoreLeader(RivalLeader):
 def by_chance(share: float, numbers: int) -> float:
     """How unlikely it is that so much of an error of form lies where a cause does, as a logarithm.
 
-    As `weights` has it: in any of `FORMS` directions, of unknown size.
-
     Parameters
     ----------
     share
@@ -239,10 +233,4 @@ def by_chance(share: float, numbers: int) -> float:
     numbers
         Of the cause.
     """
-    return 0.5 * max(FORMS - numbers, 0) * -log(max(1.0 - share, LEAST_LEFT))
-
-
-def _numbers_added(on: Followed, scored: Scored, candidates: Mapping[str, Candidate]) -> int:
-    """Magnitudes of what is promised beside what is on."""
-    added = set(scored.hypothesis.names) - set(on.names)
-    return sum(len(scored.hypothesis.parts[one].groups(candidates[one])) for one in added)
+    return -log_chance(max(1.0 - share, LEAST_LEFT), numbers)

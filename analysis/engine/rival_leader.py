@@ -101,13 +101,14 @@ class RivalLeader(Leader):
     def _as_close_elsewhere(self) -> list[Followed]:
         """Single causes of other kinds than the best that came as close."""
         close = cost_of(self._best) + CLOSE
-        kind = {self._refiner.candidates[name].kind for name in self._best.names}
+        kinds = self._kinds(self._best.names)
         singles = [one for one in self._led if one.to_end and len(one.names) == 1]
         return [
-            one
-            for one in singles
-            if cost_of(one) < close and self._refiner.candidates[one.names[0]].kind not in kind
+            one for one in singles if cost_of(one) < close and not kinds & self._kinds(one.names)
         ]
+
+    def _kinds(self, names: Sequence[str]) -> set[str]:
+        return {self._refiner.candidates[name].kind for name in names}
 
     def _lead_everywhere(self) -> None:
         """Each cause of what explains to the noise, and its kin, in all places alike.

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from math import log
 
 import numpy as np
 
@@ -105,9 +106,7 @@ def _by_chance(
     That is of those that have a cause less than the best; infinity for all others.
 
     Where the best comes nearly to the noise, and without one of its causes more is left than that
-    is, an error of form had to be of the shape of that cause. It lies in any of `FORMS` directions,
-    of unknown size: all but a share s of it is in k of them with a probability of
-    s^((FORMS - k) / 2).
+    is, an error of form had to be of the shape of that cause (`log_chance`).
 
     Parameters
     ----------
@@ -124,14 +123,30 @@ def _by_chance(
         if not (fewer and fewer < set(best.hypothesis.names) and one.left > noise):
             continue
         share = (max(best.left, 1.0) + noise - 2.0) / (one.left + noise - 2.0)
-        numbers = _numbers(best.hypothesis, candidates) - _numbers(one.hypothesis, candidates)
-        chance = 0.5 * max(FORMS - numbers, 0) * float(np.log(share))
+        numbers = numbers_of(best.hypothesis, candidates) - numbers_of(one.hypothesis, candidates)
+        chance = log_chance(share, numbers)
         more = best.hypothesis.log_prior(candidates) - one.hypothesis.log_prior(candidates)
         found[i] = chance - more
     return found
 
 
-def _numbers(hypothesis: Hypothesis, candidates: Mapping[str, Candidate]) -> int:
+def log_chance(share: float, numbers: int) -> float:
+    """How likely it is that all but a share of an error of form is where a cause is, its logarithm.
+
+    It lies in any of `FORMS` directions, of unknown size: all but a share s of it is in k of them
+    with a probability of s^((FORMS - k) / 2).
+
+    Parameters
+    ----------
+    share
+        Of what is left, what is left with the cause.
+    numbers
+        Of the cause.
+    """
+    return 0.5 * max(FORMS - numbers, 0) * log(share)
+
+
+def numbers_of(hypothesis: Hypothesis, candidates: Mapping[str, Candidate]) -> int:
     """How many magnitudes are free."""
     return sum(len(part.groups(candidates[name])) for name, part in hypothesis.parts.items())
 

@@ -1,11 +1,14 @@
 """What is seldom meant is said: a dead channel, another unit, rounding; and nothing else is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle, Segment
-from analysis.engine.unlikely import elsewhere, rounded, unlikely
+from analysis.engine.unlikely import elsewhere, missing_of, rounded, unknown_kin, unlikely
+from tests.analysis.engine.test_check import Line
 
 T_S = np.arange(0.0, 10.0, 0.05)
 NOISE = 0.01
@@ -86,3 +89,22 @@ def test_another_zero_is_said() -> None:
         found = elsewhere((bundle,), [MOTION[:, None]])
         assert len(found) == many
         assert all("'x' is +273 degC from what is simulated" in one for one in found)
+
+
+def test_an_empty_list_and_a_stretch_that_holds_nothing_out_are_said() -> None:
+    system = Line()
+    assert missing_of(system) == ()
+    system.candidates = ()
+    (bundle,) = system.bundles
+    beyond = Segment(2e4, 3e4, held_out=True, name="last")
+    system.bundles = (replace(bundle, segments=(*bundle.segments, beyond)),)
+    empty, nothing = missing_of(system)
+    assert "the list of candidates is empty" in empty
+    assert "nothing is held out: segment 'last', from 20000 to 30000 s" in nothing
+
+
+def test_a_name_in_akin_that_is_none_in_the_list_is_said() -> None:
+    bend, ripple = Line.candidates
+    assert unknown_kin((replace(bend, akin=("ripple",)), ripple)) == ()
+    (one,) = unknown_kin((replace(bend, akin=("riple",)), ripple))
+    assert "candidate 'bend': akin names 'riple'" in one
