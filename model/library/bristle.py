@@ -24,7 +24,7 @@ LONGEST_STEP_S = 3.1 * CATCHES_S
 grows without bound, however weak the friction."""
 
 BRISTLE_LOSS = Parameter(
-    "bristle_loss_s", "s", 5e-4, 0.0, 1e-2, "t_b, loss of the bristle over its stiffness"
+    "bristle_loss_s", "s", 5e-4, 0.0, 5e-3, "t_b, loss of the bristle over its stiffness"
 )
 
 BENT_AT_REST = Parameter(
