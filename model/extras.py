@@ -12,6 +12,7 @@ from model.kernel import STATES, Extras
 from model.library.discovery import first_parameters, kernel_effects, parameter_rows
 from model.library.effect import Acts, Effect, Law, State
 from model.library.lanes import CABLE
+from model.library.let_go import LET_GO
 from model.library.selection import ActiveEffect
 from model.machine import Machine
 
@@ -65,6 +66,18 @@ def resting(
             own = {one: numbers[one] for one in signature(state.rests).parameters if one in numbers}
             found.append((first + np.arange(CABLES), partial(_told, state.rests, own)))
     return found
+
+
+def let_go_shares(
+    extras: Extras | None, effects: Sequence[ActiveEffect]
+) -> list[NDArray[np.float64]]:
+    """Of the same states in the same order: the share of X_p0 that they went along with, (8,)."""
+    known = {one.name: one.columns() for one in effects}
+    return [
+        known[effect.name].get(LET_GO.name, np.zeros(CABLES))
+        for _, effect, state in _states(extras)
+        if state.rests is not None
+    ]
 
 
 def _told(law: Law, numbers: Mapping[str, Array], elongation: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled
-from model.extras import held, resting
+from model.extras import held, let_go_shares, resting
 from model.kernel import Extras
 from model.kinematics import cross, rotation, trigonometry
 from model.library.selection import ActiveEffect
@@ -87,6 +87,35 @@ def rest_state(
                 found[there] = law(_elongation(machine, found[None, :6])[0])
             return found
     return np.zeros(states)
+
+
+def gained_at_once(
+    machine: Machine,
+    extras: Extras | None,
+    effects: Sequence[ActiveEffect],
+    rest: Array,
+    offset_m: Sequence[float],
+) -> Array:
+    """What the state gains as X_p0 acts: the platform's offset, and what memory goes along with it.
+
+    Parameters
+    ----------
+    machine
+        The plant.
+    extras, effects
+        Effects in the kernel, packed and as they are.
+    rest
+        The state at rest, shape (states,).
+    offset_m
+        X_p0 in O-XYZ, m, shape (3,).
+    """
+    gained = np.zeros_like(rest)
+    gained[:3] = offset_m
+    before, after = _elongation(machine, np.stack([rest, rest + gained])[:, :6])
+    told = resting(extras, effects, machine)
+    for (places, law), share in zip(told, let_go_shares(extras, effects), strict=True):
+        gained[places] = share * (law(after) - law(before))
+    return gained
 
 
 def tones_hz(machine: Machine) -> Array:

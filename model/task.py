@@ -21,7 +21,7 @@ from model.library.selection import ActiveEffect, of_rig, those_that_act
 from model.machine import Machine
 from model.method import Method, find_method
 from model.motion import Motion, RampedSine
-from model.rest import rest_state
+from model.rest import gained_at_once, rest_state
 from model.steps import Steps, divide, jumps_at_s, steps_a_row
 from model.tabulated import drive_at_stages
 
@@ -300,7 +300,14 @@ class Task:
         if at > 0:
             jump -= self._state_at(start_s, middle_s[at - 1])
         disturbance = self._disturbance
-        jump[0:3] += disturbance.platform_offset_m
+        if any(disturbance.platform_offset_m):
+            jump += gained_at_once(
+                self.machine,
+                self.extras,
+                self.acting,
+                self.initial(steps),
+                disturbance.platform_offset_m,
+            )
         if self.excitation_effect:
             cables = (STATES - PLATFORM_STATES) // 2
             jump[PLATFORM_STATES : PLATFORM_STATES + cables] += disturbance.cable_offset_m

@@ -70,7 +70,8 @@ POLICIES: dict[str, Policy] = {
     ),
     # Fibres relax in a spectrum of times.
     "cable_relaxation": Policy(
-        shapes={"relaxation_s": (0.03, 0.5), "branch_ratio": (2.0,)}, form_share=LINEAR
+        shapes={"relaxation_s": (0.03, 0.5), "branch_ratio": (2.0,), "let_go_share": (1.0,)},
+        form_share=LINEAR,
     ),
     # Whoever made its drive may have reckoned with cables that push, as Eq. 16 has them.
     "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
@@ -80,7 +81,12 @@ POLICIES: dict[str, Policy] = {
     # whoever has branches farther apart, as many do with one a decade, has a loss that ripples.
     "cable_structural": Policy(
         form_share=LINEAR,
-        shapes={"decades_below": (0.0,), "branch_ratio": (5.0,), "highest_hz": (125.0,)},
+        shapes={
+            "decades_below": (0.0,),
+            "branch_ratio": (5.0,),
+            "highest_hz": (125.0,),
+            "let_go_share": (1.0,),
+        },
     ),
     "platform_damping": Policy(form_share=LINEAR),
     "cable_modes": Policy(form_share=0.4),
@@ -100,7 +106,12 @@ POLICIES: dict[str, Policy] = {
         shapes={"loss_s": (5e-3,), "at_x_m": (0.0,), "at_y_m": (0.0,), "at_z_m": (0.0,)}
     ),
     "pulley_inertia": Policy(
-        shapes={"grip_s": (2e-3,), "front_share": (0.0, 0.2), "bearing_per_s": (0.0, 50.0)},
+        shapes={
+            "grip_s": (2e-3,),
+            "front_share": (0.0, 0.2),
+            "bearing_per_s": (0.0, 50.0),
+            "let_go_share": (1.0,),
+        },
         form_share=LINEAR,
     ),
     "pulley_geometry": Policy(shapes={"left_at_rest": (0.0, 1.0)}, form_share=LINEAR),
@@ -183,6 +194,7 @@ BETWEEN = (
     "depth_share",
     "servo_s",
     "front_share",
+    "let_go_share",
     "ramps_kept_share",
     "highest_hz",
 )

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from model.library.effect import Acts, Effect, Parameter, State, elongated
+from model.library.let_go import LET_GO
 
 
 def pull(branch_share: Any, quick: Any, slow: Any, elongation: Any, stiffness: Any) -> Any:
@@ -34,6 +35,7 @@ EFFECT = Effect(
         Parameter("branch_share", "1", 0.1, 0.0, 0.5, "k_1 / k", magnitude=True),
         Parameter("relaxation_s", "s", 0.05, 5e-3, 100.0, "tau"),
         Parameter("branch_ratio", "1", 1.0, 1.0, 30.0, "R, of the slower time to the quicker one"),
+        LET_GO,
     ),
     states=(
         State("quick", "m", "q_1, elongation of the quicker dashpot", rests=elongated),

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from model.library.effect import Acts, Effect, Parameter, State, elongated
+from model.library.let_go import LET_GO
 
 HIGHEST_HZ, RATIO = 125.0, 5.0
 """The branches relax at 0.2, 1, 5, 25 and 125 Hz: the platform's tones are among them."""
@@ -91,6 +92,7 @@ EFFECT = Effect(
         Parameter("decades_below", "1", 0.0, -2.0, 2.0, "D, of loss below the branches"),
         Parameter("branch_ratio", "1", RATIO, 2.5, 12.0, "R, of a branch to the next slower one"),
         Parameter("highest_hz", "Hz", HIGHEST_HZ, 5.0, 125.0, "f_h, of the quickest branch"),
+        LET_GO,
     ),
     states=tuple(
         State(f"q{j}", "m", f"elongation of dashpot {j}", rests=elongated) for j in range(1, 6)

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from model.library.effect import Acts, Effect, Parameter, State
+from model.library.let_go import LET_GO
 
 
 def _tone(equivalent_kg: Any, grip_s: Any, front_share: Any, stiffness: Any) -> Any:
@@ -93,6 +94,7 @@ EFFECT = Effect(
         Parameter("grip_s", "s", 2e-3, 1e-3, 1e-2, "tau"),
         Parameter("front_share", "1", 0.0, 0.0, 0.6, "f, of the give, before the pulley"),
         Parameter("bearing_per_s", "1/s", 0.0, 0.0, 200.0, "b: drag of the bearing over m_p"),
+        LET_GO,
     ),
     states=(
         State("turned", "m", "x_r, way of the rim", rests=rests),

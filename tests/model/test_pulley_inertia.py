@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from cdpr8.rigfile import Excitation, Rig
+from model import ActiveEffect, Task, simulate_many
 from model.effects import library
+from model.simulator import run
 from tests.model.harness import STIFFNESS, cable_response
 
 
@@ -31,3 +34,22 @@ def test_a_rim_between_two_springs_is_newton_s() -> None:
         beyond = 5e-3 * (front * (1.0 - rim) - STIFFNESS)
         assert answer.in_phase[1] == pytest.approx(beyond.real, rel=0.02)
         assert answer.quadrature[1] == pytest.approx(beyond.imag, rel=0.05)
+
+
+def test_a_platform_held_at_its_disturbance_has_taken_the_rims_along(rig: Rig) -> None:
+    offset_m = np.array([1e-3, 0.0, 0.0])
+    moved = Excitation(
+        rest_s=0.2, motion_s=0.2, ramp_s=0.1, platform_offset_m=tuple(offset_m), cable_offset_m=0.0
+    )
+    plain = run(Task(rig, moved))
+    after = int(np.argmax(plain.t_s > 0.2 - 1e-6))
+    longer_m = plain.elongation_m[after]
+    assert np.abs(longer_m).max() > 1e-4
+    for share in (0.0, 0.5, 1.0):
+        values = {"equivalent_kg": 0.05, "grip_s": 2e-3, "let_go_share": share}
+        task = Task(rig, moved, effects=[ActiveEffect("pulley_inertia", values)])
+        alone, lane = run(task), simulate_many([task])[0]
+        dragged_n = (alone.tension_n - plain.tension_n)[after]
+        behind_m = (1.0 - share) * longer_m
+        assert dragged_n == pytest.approx(0.05 / 2e-3**2 * behind_m, abs=1e-6)
+        assert lane.tension_n == pytest.approx(alone.tension_n, abs=1e-7)
