@@ -20,6 +20,7 @@ from analysis.engine.near_noise import as_loud_as_it_is, near_noise, sharper_tha
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
+from analysis.engine.sizes import in_any_size
 from analysis.engine.system import System, free_of
 from analysis.engine.way import STRAIN
 from analysis.engine.whole import whole_onward
@@ -85,7 +86,8 @@ def by_ring(
     else:
         about = faint(system, nothing, free_of(system), following, near=start.seen)
         screened = one_more(about, refiner)
-        single = [guessed(about, refiner, one) for one in screened]
+        straight = [guessed(about, refiner, one) for one in screened]
+        single = in_any_size(system, refiner.candidates, nothing, straight)
         single = [*whole_onward(system, refiner.candidates, nothing), *single]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.

@@ -9,9 +9,11 @@ from analysis.engine.all_samples import (
     WORTH_IT,
     cost_of,
     farthest_first,
+    misfit_at,
     noise_of,
     rise_beside_form,
 )
+from analysis.engine.array import Array
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import eased_by, nuisances_of, one_more, promised_by
 from analysis.engine.followed import Followed
@@ -186,7 +188,8 @@ class MoreLeader(RivalLeader):
             # However much was tried: a second cause may stand for what the first had not been.
             tried = whole.names, state.hypothesis.names
             needed = cost_of(whole) > self._needed.get(tried, np.inf) - BEHIND
-            if state.hypothesis.names in known or needed or self._is_told(state, close):
+            told = self._is_told(state, close, whole.nuisance)
+            if state.hypothesis.names in known or needed or told:
                 continue
             fewer = lead_from(self._system, whole, state)
             self._keep(fewer)
@@ -197,11 +200,16 @@ class MoreLeader(RivalLeader):
                 self._lead_kin(fewer)
                 self._one_less(fewer)
 
-    def _is_told(self, state: State, most: float) -> bool:
-        """Whether it came to the same, which costs more than so much, from two places."""
+    def _is_told(self, state: State, most: float, nuisance: Array) -> bool:
+        """Whether it came to the same, which costs more than so much, from two places.
+
+        Unless it is closer where it stands: a cause that comes to nothing has led it there.
+        """
         names = state.hypothesis.names
         costs = sorted(cost_of(one) for one in self._led if one.to_end and one.names == names)
-        return len(costs) > 1 and costs[0] > most and costs[1] < costs[0] + 2.0 * BEHIND
+        if not (len(costs) > 1 and costs[0] > most and costs[1] < costs[0] + 2.0 * BEHIND):
+            return False
+        return misfit_at(self._samples, nuisance, state) + float(nuisance @ nuisance) > costs[0]
 
     def _as_close(self) -> list[Followed]:
         """What came about as close as the best with two causes or more, the closest first.

@@ -1,0 +1,130 @@
+"""Causes of any size, weighed over the stretch in which the motion is lost.
+
+Straight lines about where parameters alone came tell what a little of a cause would do. What is
+strong need not do more of the same: a wheel that has to be turned lowers every tone, and a motion
+that lasts for many periods is soon nowhere near. So each cause is simulated in every size, in all
+of its places alike, over the stretch beyond which nothing leads; parameters make up for what they
+can, in straight lines. What lines told of single places is weighed among them.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from analysis.engine.array import Array
+from analysis.engine.candidate import Candidate
+from analysis.engine.differences import differences
+from analysis.engine.followed import Followed
+from analysis.engine.guess import Guess
+from analysis.engine.hypothesis import Hypothesis, Part
+from analysis.engine.ring_samples import Samples
+from analysis.engine.screen import limits
+from analysis.engine.state import State
+from analysis.engine.system import System
+from analysis.engine.way import WINDOWS
+
+SIZES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Of the size at which a cause is screened: a strong one is anywhere among them."""
+
+BEYOND = 2
+"""Windows beyond where parameters alone lead: in the first there may be hardly any motion."""
+
+
+def in_any_size(
+    system: System,
+    candidates: Mapping[str, Candidate],
+    nothing: Followed,
+    told: Sequence[Guess] = (),
+) -> list[Guess]:
+    """Single causes where the motion is lost, the best first.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    candidates
+        By name.
+    nothing
+        How far parameters alone led.
+    told
+        What straight lines told.
+
+    Returns
+    -------
+    list of Guess
+        What was told, and each cause in its likeliest size and form, with the rise of the score
+        over that stretch.
+    """
+    at = nothing.about or nothing
+    share = [one for one in WINDOWS if one > min(at.telling, WINDOWS[-2])][:BEYOND][-1]
+    samples = Samples(system, everything=True)
+    base = Followed(at.nuisance, None)
+    (here,) = samples.residuals([base.point], share)
+    made_up = _MadeUp(samples, base, here, share)
+    states = [state for one in candidates.values() for state in _in_sizes(one, candidates)]
+    states += [one.state for one in told]
+    points = [Followed(base.nuisance, one).point for one in states]
+    alone = made_up.cost(here)
+    rises = [0.5 * (alone - made_up.cost(one)) for one in samples.residuals(points, share)]
+    best: dict[tuple[str, ...], tuple[float, State]] = {}
+    for rise, state in zip(rises, states[: len(states) - len(told)], strict=False):
+        known = best.get(state.hypothesis.names)
+        if known is None or rise > known[0]:
+            best[state.hypothesis.names] = rise, state
+    found = [Guess(state, base.nuisance, rise) for rise, state in best.values()]
+    again = rises[len(rises) - len(told) :]
+    found += [Guess(one.state, one.nuisance, rise) for one, rise in zip(told, again, strict=True)]
+    return sorted(found, key=lambda one: -one.log_score)
+
+
+class _MadeUp:
+    """What is left after parameters have made up for what they can, in straight lines.
+
+    Parameters
+    ----------
+    samples
+        By which it is told.
+    base, here
+        Parameters alone, and what they leave, shape (n,).
+    share
+        Of the time.
+    """
+
+    def __init__(self, samples: Samples, base: Followed, here: Array, share: float) -> None:
+        self._inside = samples.shares <= share
+        columns, _ = differences(samples, base, here, share)
+        self._columns = columns[:, self._inside]
+        self._at = base.nuisance
+        self._matrix = self._columns @ self._columns.T + np.eye(len(self._at))
+
+    def cost(self, residual: Array) -> float:
+        """Squared misfit and strain, where parameters have moved.
+
+        Parameters
+        ----------
+        residual
+            Before they have, shape (n,).
+        """
+        left = residual[self._inside]
+        moves = np.linalg.solve(self._matrix, self._columns @ left - self._at)
+        left, there = left - moves @ self._columns, self._at + moves
+        cost = float(left @ left + there @ there)
+        return cost if np.isfinite(cost) else np.inf
+
+
+def _in_sizes(candidate: Candidate, candidates: Mapping[str, Candidate]) -> Iterator[State]:
+    """One cause in every size and form, each of its magnitudes alone, in all places alike."""
+    if candidate.fixed:
+        return
+    none = State.at(Hypothesis(), {}, candidates)
+    names = tuple(one.name for one in candidate.terms)
+    steps = {one.name: one.step for one in candidate.terms}
+    whole = candidate.together and not candidate.shareable
+    groups = [names] if whole else candidate.groups(names, candidate.shareable)
+    for terms in groups:
+        low, high = limits(candidate, terms)
+        for shapes in candidate.variants():
+            part = Part(terms, candidate.shareable and len(terms) > 1, shapes)
+            for size in (*SIZES, *(-one for one in SIZES)):
+                if all(low <= size * steps[one] <= high for one in terms):
+                    yield none.plus(candidate.name, part, {one: size * steps[one] for one in terms})
