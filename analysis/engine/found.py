@@ -12,6 +12,7 @@ from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
 from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
+from analysis.engine.sizes import in_any_size
 from analysis.engine.system import System, free_of
 
 
@@ -51,7 +52,8 @@ class Led(NamedTuple):
         if self.still is None:
             return self.single
         about = faint(refiner.system, self.still, free_of(refiner.system))
-        return [guessed(about, refiner, one) for one in one_more(about, refiner)]
+        straight = [guessed(about, refiner, one) for one in one_more(about, refiner)]
+        return in_any_size(refiner.system, refiner.candidates, self.still, straight)
 
 
 class Start(NamedTuple):
