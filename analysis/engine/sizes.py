@@ -8,6 +8,7 @@ can, in straight lines. What lines told of single places is weighed among them.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -61,19 +62,21 @@ def in_any_size(
     base = Followed(at.nuisance, None)
     (here,) = samples.residuals([base.point], share)
     made_up = _MadeUp(samples, base, here, share)
-    states = [state for one in candidates.values() for state in _in_sizes(one, candidates)]
-    states += [one.state for one in told]
-    points = [Followed(base.nuisance, one).point for one in states]
     alone = made_up.cost(here)
-    rises = [0.5 * (alone - made_up.cost(one)) for one in samples.residuals(points, share)]
-    best: dict[tuple[str, ...], tuple[float, State]] = {}
-    for rise, state in zip(rises, states[: len(states) - len(told)], strict=False):
-        known = best.get(state.hypothesis.names)
-        if known is None or rise > known[0]:
-            best[state.hypothesis.names] = rise, state
-    found = [Guess(state, base.nuisance, rise) for rise, state in best.values()]
-    again = rises[len(rises) - len(told) :]
-    found += [Guess(one.state, one.nuisance, rise) for one, rise in zip(told, again, strict=True)]
+
+    def rises(states: Sequence[State]) -> list[float]:
+        points = [Followed(base.nuisance, one).point for one in states]
+        left = samples.residuals(points, share)
+        return [0.5 * (alone - made_up.cost(one)) for one in left]
+
+    found = []
+    for candidate in candidates.values():
+        states = list(_in_sizes(candidate, candidates))
+        if states:
+            rise, first = max(zip(rises(states), range(len(states)), strict=True))
+            found.append(Guess(states[first], base.nuisance, rise))
+    again = rises([one.state for one in told])
+    found += [replace(one, log_score=rise) for one, rise in zip(told, again, strict=True)]
     return sorted(found, key=lambda one: -one.log_score)
 
 
