@@ -31,6 +31,11 @@ BEYOND = 2
 """Windows beyond where parameters alone lead: in the first there may be hardly any motion."""
 
 
+LONGEST = 0.3
+"""Of the time: what parameters can make up for over longer than that is little, and straight lines
+tell it; so much more would have to be simulated."""
+
+
 def in_any_size(
     system: System,
     candidates: Mapping[str, Candidate],
@@ -54,10 +59,12 @@ def in_any_size(
     -------
     list of Guess
         What was told, and each cause in its likeliest size and form, with the rise of the score
-        over that stretch.
+        over that stretch; as it was told, where the motion is not lost as it begins.
     """
     at = nothing.about or nothing
     share = [one for one in WINDOWS if one > min(at.telling, WINDOWS[-2])][:BEYOND][-1]
+    if share > LONGEST:
+        return list(told)
     samples = Samples(system, everything=True)
     base = Followed(at.nuisance, None)
     (here,) = samples.residuals([base.point], share)

@@ -1,9 +1,12 @@
 """What is strong is found in its size, where straight lines lead nowhere."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from analysis.engine.candidate import Candidate, Term
+from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.search import search
@@ -76,3 +79,13 @@ def test_it_is_named_with_its_number() -> None:
     assert found.fitted[0].hypothesis.names == ("wheel",)
     assert found.fitted[0].values["wheel", "share"] == pytest.approx(0.5, abs=0.02)
     assert found.fitted[0].left == pytest.approx(1.0, abs=0.1)
+
+
+def test_what_parameters_made_up_for_over_a_long_time_is_left_to_straight_lines() -> None:
+    system = wheeled(0.5)
+    candidates = {one.name: one for one in system.candidates}
+    late = replace(Followed(np.zeros(1), None), telling=0.27)
+    told = [Guess(state_of(DAMPING, 0.02), np.zeros(1))]
+    assert in_any_size(system, candidates, late, told) == told
+    early = replace(late, telling=0.1)
+    assert len(in_any_size(system, candidates, early, told)) == 1 + len(candidates)
