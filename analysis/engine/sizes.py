@@ -30,7 +30,6 @@ SIZES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 BEYOND = 2
 """Windows beyond where parameters alone lead: in the first there may be hardly any motion."""
 
-
 LONGEST = 0.3
 """Of the time: what parameters can make up for over longer than that is little, and straight lines
 tell it; so much more would have to be simulated."""
@@ -129,8 +128,9 @@ def _in_sizes(candidate: Candidate, candidates: Mapping[str, Candidate]) -> Iter
     none = State.at(Hypothesis(), {}, candidates)
     names = tuple(one.name for one in candidate.terms)
     steps = {one.name: one.step for one in candidate.terms}
-    whole = candidate.together and not candidate.shareable
-    groups = [names] if whole else candidate.groups(names, candidate.shareable)
+    groups = candidate.groups(names, candidate.shareable)
+    if candidate.together:
+        groups = (names,)
     for terms in groups:
         low, high = limits(candidate, terms)
         for shapes in candidate.variants():
