@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from inspect import signature
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,24 @@ Array = NDArray[np.float64]
 
 SMALL_N = 1e-3
 """Step of the differences that tell what a state does that a rate holds at rest: all are forces."""
+
+
+class Rested(NamedTuple):
+    """A state that the elongation of its cable tells at rest.
+
+    Parameters
+    ----------
+    places
+        Of the cables' in the state vector, shape (8,).
+    law
+        What elongations, shape (..., 8), have made of it.
+    let_go
+        With which share of X_p0 it went along, shape (8,).
+    """
+
+    places: NDArray[np.int64]
+    law: Callable[[Array], Array]
+    let_go: NDArray[np.float64]
 
 
 def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
@@ -48,8 +67,8 @@ def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
 
 def resting(
     extras: Extras | None, effects: Sequence[ActiveEffect], machine: Machine
-) -> list[tuple[NDArray[np.int64], Callable[[Array], Array]]]:
-    """Places of the states that the elongation of their cables tells at rest, and how it does.
+) -> list[Rested]:
+    """The states that the elongation of their cables tells at rest.
 
     Parameters
     ----------
@@ -59,25 +78,15 @@ def resting(
         The plant.
     """
     known = {one.name: one.columns() for one in effects}
-    found: list[tuple[NDArray[np.int64], Callable[[Array], Array]]] = []
+    found: list[Rested] = []
     for first, effect, state in _states(extras):
         if state.rests is not None:
             numbers = {**known[effect.name], "stiffness": machine.stiffness}
             own = {one: numbers[one] for one in signature(state.rests).parameters if one in numbers}
-            found.append((first + np.arange(CABLES), partial(_told, state.rests, own)))
+            let_go = numbers.get(LET_GO.name, np.zeros(CABLES))
+            law = partial(_told, state.rests, own)
+            found.append(Rested(first + np.arange(CABLES), law, let_go))
     return found
-
-
-def let_go_shares(
-    extras: Extras | None, effects: Sequence[ActiveEffect]
-) -> list[NDArray[np.float64]]:
-    """Of the same states in the same order: the share of X_p0 that they went along with, (8,)."""
-    known = {one.name: one.columns() for one in effects}
-    return [
-        known[effect.name].get(LET_GO.name, np.zeros(CABLES))
-        for _, effect, state in _states(extras)
-        if state.rests is not None
-    ]
 
 
 def _told(law: Law, numbers: Mapping[str, Array], elongation: Array) -> Array:

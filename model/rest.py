@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled
-from model.extras import held, let_go_shares, resting
+from model.extras import held, resting
 from model.kernel import Extras
 from model.kinematics import cross, rotation, trigonometry
 from model.library.selection import ActiveEffect
@@ -72,7 +72,7 @@ def rest_state(
     for _ in range(MOST_ROUNDS):
         tried = np.tile(found, (len(places) + 1, 1))
         tried[np.arange(1, len(places) + 1), places] += steps
-        for there, law in told:
+        for there, law, _ in told:
             tried[:, there] = law(_elongation(machine, tried[:, :6]))
         derivatives(tried, drive, plant, extras, rates)
         left = rates[:, held_by]
@@ -83,7 +83,7 @@ def rest_state(
         if np.abs(move[POSE]).max() < CLOSE_M:
             if not np.abs(found[POSE]).max() > 10.0 * CLOSE_M:
                 break
-            for there, law in told:
+            for there, law, _ in told:
                 found[there] = law(_elongation(machine, found[None, :6])[0])
             return found
     return np.zeros(states)
@@ -111,10 +111,11 @@ def gained_at_once(
     """
     gained = np.zeros_like(rest)
     gained[:3] = offset_m
-    before, after = _elongation(machine, np.stack([rest, rest + gained])[:, :6])
-    told = resting(extras, effects, machine)
-    for (places, law), share in zip(told, let_go_shares(extras, effects), strict=True):
-        gained[places] = share * (law(after) - law(before))
+    told = [one for one in resting(extras, effects, machine) if one.let_go.any()]
+    if told:
+        before, after = _elongation(machine, np.stack([rest, rest + gained])[:, :6])
+        for places, law, share in told:
+            gained[places] = share * (law(after) - law(before))
     return gained
 
 

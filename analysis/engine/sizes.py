@@ -104,7 +104,9 @@ class _MadeUp:
         columns, _ = differences(samples, base, here, share)
         self._columns = columns[:, self._inside]
         self._at = base.nuisance
-        self._matrix = self._columns @ self._columns.T + np.eye(len(self._at))
+        matrix = self._columns @ self._columns.T + np.eye(len(self._at))
+        self._move = np.linalg.solve(matrix, self._columns)
+        self._back = np.linalg.solve(matrix, self._at)
 
     def cost(self, residual: Array) -> float:
         """Squared misfit and strain, where parameters have moved.
@@ -115,7 +117,7 @@ class _MadeUp:
             Before they have, shape (n,).
         """
         left = residual[self._inside]
-        moves = np.linalg.solve(self._matrix, self._columns @ left - self._at)
+        moves = self._move @ left - self._back
         left, there = left - moves @ self._columns, self._at + moves
         cost = float(left @ left + there @ there)
         return cost if np.isfinite(cost) else np.inf
