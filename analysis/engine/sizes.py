@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate
@@ -20,6 +21,7 @@ from analysis.engine.guess import Guess
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import limits
+from analysis.engine.solve import root_beside_one
 from analysis.engine.state import State
 from analysis.engine.system import System
 from analysis.engine.way import WINDOWS
@@ -102,11 +104,9 @@ class _MadeUp:
     def __init__(self, samples: Samples, base: Followed, here: Array, share: float) -> None:
         self._inside = samples.shares <= share
         columns, _ = differences(samples, base, here, share)
-        self._columns = columns[:, self._inside]
-        self._at = base.nuisance
-        matrix = self._columns @ self._columns.T + np.eye(len(self._at))
-        self._move = np.linalg.solve(matrix, self._columns)
-        self._back = np.linalg.solve(matrix, self._at)
+        self._does = columns[:, self._inside].T
+        self._factor = root_beside_one(self._does)
+        self._moved = self._does @ base.nuisance
 
     def cost(self, residual: Array) -> float:
         """Squared misfit and strain, where parameters have moved.
@@ -116,10 +116,10 @@ class _MadeUp:
         residual
             Before they have, shape (n,).
         """
-        left = residual[self._inside]
-        moves = self._move @ left - self._back
-        left, there = left - moves @ self._columns, self._at + moves
-        cost = float(left @ left + there @ there)
+        # As it would be with all of them where they are likeliest beforehand.
+        whole = residual[self._inside] + self._moved
+        taken = solve_triangular(self._factor, self._does.T @ whole, lower=True, check_finite=False)
+        cost = float(whole @ whole - taken @ taken)
         return cost if np.isfinite(cost) else np.inf
 
 
