@@ -15,9 +15,8 @@ from analysis.engine.sensitivity import Columns, term_columns
 from analysis.engine.state import State
 from analysis.engine.survey import bends, sticks
 
-FOLLOWED, PROMISED = 2, 4
-"""Of what the ring promises, and of what is likely without it, so many are led to its phase; and
-of what the first moments of a motion promise, where nothing comes there that lines tell."""
+FOLLOWED = 2
+"""Of what the ring promises, and of what is likely without it, so many are led to its phase."""
 
 UNLIKELY, SEEN = 6.0, 8.0
 """What is this far behind nothing, without the ring, is not likely; and what is so far before that,
@@ -61,16 +60,17 @@ def by_lines(
     if led is not None:
         likely = _to_follow(refiner, null, led.single, alone)
         # Lines may tell nothing of what the first moments of a motion tell.
-        single = led.single if likely else led.promised(refiner)
-        told = [*(likely or single[:FOLLOWED]), *_as_likely(refiner, null, alone)]
-        led.search.follow(told, [*alone, *single], seen=True)
+        told = [*(likely or led.single[:FOLLOWED]), *_as_likely(refiner, null, alone)]
+        led.search.follow(told, [*alone, *led.single], seen=True)
         if led.search.ended:
             return Found(singles, (), faint=True)
-        if likely:
-            _follow_others(refiner, led, alone)
+        bent = [one for one in alone if bends(one.state) and sticks(one.state)]
+        if likely and bent and _is_nowhere(led):
+            # What bends with its size, and lines and a short ring tell badly, is led by a survey.
+            led.search.follow(bent, [], seen=True)
         poor = not led.search.arrived or led.search.is_poor
         if poor and led.search.foretells is None:
-            led.search.follow(_both(refiner, null, single, alone), [], seen=True)
+            led.search.follow(_both(refiner, null, led.single, alone), [], seen=True)
         if led.search.foretells is not None:
             ranked = finder.ranked()
             return Found(singles, ranked, faint=False, foretells=led.search.foretells)
@@ -85,19 +85,6 @@ def by_lines(
             led.search.follow_beside(ranked[0].hypothesis.names)
     rung = led.search.fitted()
     return Found(singles, rung or ranked, faint=rung is not None)
-
-
-def _follow_others(refiner: Refiner, led: Led, alone: Sequence[Guess]) -> None:
-    """Where what is likely by lines leads nowhere, follow what they and a short ring tell badly.
-
-    What bends with its size is led by a survey. What a motion's first moments promise was not asked
-    where parameters alone foretell nothing that moves.
-    """
-    bent = [one for one in alone if bends(one.state) and sticks(one.state)]
-    if bent and _is_nowhere(led):
-        led.search.follow(bent, [], seen=True)
-    if led.still is not None and _is_nowhere(led):
-        led.search.follow(led.promised(refiner)[:PROMISED], [], seen=True)
 
 
 def _is_nowhere(led: Led) -> bool:

@@ -9,7 +9,7 @@ from analysis.engine.all_samples import cost_of
 from analysis.engine.array import Array
 from analysis.engine.beginnings import begun_otherwise
 from analysis.engine.cycles import valley
-from analysis.engine.faint import faint
+from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import guessed, one_more
 from analysis.engine.finder import Tell
 from analysis.engine.followed import Followed
@@ -20,6 +20,8 @@ from analysis.engine.near_noise import as_loud_as_it_is, near_noise, sharper_tha
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import FAINT, STRETCHES, follow_ring
 from analysis.engine.ring_samples import Samples
+from analysis.engine.screen import Scored
+from analysis.engine.sensitivity import Progress
 from analysis.engine.sizes import in_any_size
 from analysis.engine.system import System, free_of
 from analysis.engine.way import STRAIN
@@ -30,6 +32,9 @@ ABREAST, MOST_ABREAST = 12.0, 4
 
 MOST_OF_IT = 0.5
 """Where parameters alone lead over this share of the time, bent far, they may be what is off."""
+
+PROMISED = 4
+"""So many of what is promised where a rest ends are led from there, until one is at the noise."""
 
 LONG = 0.4
 """Where parameters alone have foretold this share of the time, nothing was left out of that."""
@@ -72,10 +77,9 @@ def by_ring(
     start = Start(refiner.calibrated.at) if start is None else start
     nothing = _nothing(system, start)
     near = nothing.left < FAINT and nothing.about is None
-    again = as_loud_as_it_is(system, nothing) if enough is None else None
-    if again is not None or (enough is None and _tells_nothing(system, nothing)):
-        led = FollowedSearch(refiner, nothing, most_causes, following)
-        return Found((), (), faint=False, led=Led(led, [], nothing), again=again)
+    alone = None if enough else _by_nothing(refiner, nothing, most_causes, following)
+    if alone is not None:
+        return alone
     told = near_noise(refiner, nothing, start, following) if near else None
     if told is not None:
         nothing, about, screened = told.nothing, told.about, told.screened
@@ -84,10 +88,7 @@ def by_ring(
             return Found(screened, told.faintly, faint=True, again=again, alone=about)
         single = told.single(refiner)
     else:
-        about = faint(system, nothing, free_of(system), following, near=start.seen)
-        screened = one_more(about, refiner)
-        straight = [guessed(about, refiner, one) for one in screened]
-        single = in_any_size(system, refiner.candidates, nothing, straight)
+        about, screened, single = _promised(refiner, nothing, following, near=start.seen)
         single = [*whole_onward(system, refiner.candidates, nothing), *single]
     led = FollowedSearch(refiner, nothing, most_causes, following, near=near, enough=enough)
     # Where parameters alone come to the noise, what they made up for could be several things.
@@ -110,6 +111,45 @@ def by_ring(
         return Found(screened, fitted, faint=True, alone=about if near else None)
     foretold = 1.0 if led.arrived else _foretold(nothing)
     return Found((), (), faint=False, led=Led(led, single), foretold=foretold)
+
+
+def _promised(
+    refiner: Refiner, nothing: Followed, tell: Progress, near: Faint | None = None
+) -> tuple[Faint, list[Scored], list[Guess]]:
+    """What is about where parameters alone lead, in straight lines, and in any size."""
+    about = faint(refiner.system, nothing, free_of(refiner.system), tell, near=near)
+    screened = one_more(about, refiner)
+    straight = [guessed(about, refiner, one) for one in screened]
+    sized = in_any_size(refiner.system, refiner.candidates, nothing, straight)
+    return about, screened, sized
+
+
+def _by_nothing(
+    refiner: Refiner, nothing: Followed, most_causes: int, tell: Progress
+) -> Found | None:
+    """What parameters alone tell: how loud noise is, or when a rest ends; None: neither."""
+    again = as_loud_as_it_is(refiner.system, nothing)
+    if again is not None:
+        return Found((), (), faint=False, again=again)
+    if _tells_nothing(refiner.system, nothing):
+        return _out_of_rest(refiner, nothing, most_causes, tell)
+    return None
+
+
+def _out_of_rest(refiner: Refiner, nothing: Followed, most_causes: int, tell: Progress) -> Found:
+    """What the moment tells in which a rest ends that parameters alone foretell.
+
+    Which place has how much of it, the ring that follows tells. Where none leads to the noise,
+    lines are asked.
+    """
+    _, screened, single = _promised(refiner, nothing, tell)
+    led = FollowedSearch(refiner, nothing, most_causes, tell)
+    apart = [replace(one, state=one.state.apart()) for one in single[:PROMISED]]
+    led.follow(apart, single, seen=True)
+    rung = led.fitted() if led.arrived and not led.is_poor else None
+    if rung is not None:
+        return Found(screened, rung, faint=True)
+    return Found((), (), faint=False, led=Led(led, single))
 
 
 def _foretold(nothing: Followed) -> float:
@@ -154,8 +194,7 @@ def _leads_bent(nothing: Followed) -> bool:
 def _tells_nothing(system: System, nothing: Followed) -> bool:
     """Whether nothing moves as long as parameters alone foretell what is recorded.
 
-    As where a rest is followed, and the motion is lost as it begins: what the ring promises was
-    told by the rest. Lines tell more.
+    As where a rest is followed, and the motion is lost as it begins.
     """
     before = nothing.share - 1.0 / STRETCHES
     if nothing.reached[0] > 0.0 or before <= 0.0:

@@ -4,16 +4,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from analysis.engine.array import Array
-from analysis.engine.faint import Faint, faint
-from analysis.engine.faint_search import guessed, one_more
+from analysis.engine.faint import Faint
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.followed_search import FollowedSearch
 from analysis.engine.guess import Guess
-from analysis.engine.refine import Refiner
 from analysis.engine.screen import Scored
-from analysis.engine.sizes import in_any_size
-from analysis.engine.system import System, free_of
+from analysis.engine.system import System
 
 
 class Found(NamedTuple):
@@ -38,22 +35,10 @@ class Found(NamedTuple):
 
 
 class Led(NamedTuple):
-    """What was led to the ring's phase so far, and what the ring promised alone.
-
-    Where parameters alone foretell nothing that moves, it was not asked: where they have come.
-    """
+    """What was led to the ring's phase so far, and what the ring promised alone."""
 
     search: FollowedSearch
     single: Sequence[Guess]
-    still: Followed | None = None
-
-    def promised(self, refiner: Refiner) -> Sequence[Guess]:
-        """What the ring promises, from the moment on at which something moves if need be."""
-        if self.still is None:
-            return self.single
-        about = faint(refiner.system, self.still, free_of(refiner.system))
-        straight = [guessed(about, refiner, one) for one in one_more(about, refiner)]
-        return in_any_size(refiner.system, refiner.candidates, self.still, straight)
 
 
 class Start(NamedTuple):

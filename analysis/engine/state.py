@@ -241,6 +241,11 @@ class State:
             return self
         return State.at(hypothesis, magnitudes, self.candidates)
 
+    def apart(self) -> "State":
+        """With each place free to be what it is, as strong as all of them are."""
+        parts = {name: replace(one, shared=False) for name, one in self.hypothesis.parts.items()}
+        return State.at(Hypothesis(parts), self.term_values(), self.candidates)
+
     def whole(self) -> "State":
         """With every number of what acts in one place: a recording may not have told all of it."""
         hypothesis, magnitudes = self.hypothesis, self.term_values()

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine import by_lines
-from analysis.engine.by_ring import _abreast, _leads_bent
+from analysis.engine.by_ring import _abreast, _leads_bent, _out_of_rest
 from analysis.engine.candidate import Candidate, Term
 from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
-from analysis.engine.found import Led
 from analysis.engine.look import look
 from analysis.engine.near_noise import _is_hollow
 from analysis.engine.refine import Refiner
@@ -58,23 +56,24 @@ def test_where_parameters_are_bent_and_the_ring_promises_nothing_lines_are_asked
     assert _abreast([]) == []
 
 
-def test_where_lines_tell_nothing_what_the_first_moments_of_a_motion_tell_is_led(
+def test_what_moves_where_a_rest_ends_is_led_from_there_and_lines_are_asked_of_the_rest(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """And where nothing could be led, nothing is said, either."""
     system = Tuned(ring(0.0, 0.2, 0.0, 0.0))
     refiner = Refiner(system, *look(system))
-    still = follow_ring(system, np.zeros(1), everything=True, most=0.0)
-    search = FollowedSearch(refiner, still, 2)
-    assert search.fitted() is None
-    monkeypatch.setattr(by_lines, "_to_follow", lambda *_: [])
-    monkeypatch.setattr(by_lines, "_as_likely", lambda *_: [])
-    led = Led(search, [], replace(still, telling=0.3))
-    assert led.promised(refiner)[0].hypothesis.names == ("damping",)
-    found = by_lines.by_lines(refiner, refiner.nothing(), 2, None, led)
+    lost = follow_ring(system, np.zeros(1), everything=True, most=0.0)
+    still = replace(lost, telling=0.3)
+    found = _out_of_rest(refiner, still, 2, lambda done, total: None)
     assert found.faint
     assert found.fitted[0].hypothesis.names == ("damping",)
     assert found.fitted[0].values["damping", "rate"] == pytest.approx(0.2, abs=0.01)
+    monkeypatch.setattr(FollowedSearch, "follow", lambda *_, **__: None)
+    found = _out_of_rest(refiner, still, 2, lambda done, total: None)
+    assert not found.faint
+    assert found.led is not None
+    assert found.led.search.fitted() is None
+    assert found.led.single[0].hypothesis.names == ("damping",)
 
 
 def test_beside_what_lines_are_sure_of_the_ring_is_asked_where_that_was_lost(
