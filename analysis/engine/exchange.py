@@ -30,14 +30,14 @@ from analysis.engine.system import System
 BEHIND = 15.0
 """What promises to stay this far behind the cause that it stands for is no rival of it,"""
 
-NEARLY = 0.95
+NEARLY = 0.9
 """unless it explains this share of what that does: the more there is, the less straight lines are
 to be trusted."""
 
 CLOSE = 60.0
 """What came as near as this to the best of all, in squared misfit, is in the right places."""
 
-MOST = 2
+MOST = 3
 """So many rivals are led from one hypothesis."""
 
 
@@ -136,6 +136,17 @@ def rivals(
                 anew = follow_ring(system, np.zeros_like(law.nuisance), there, everything=True)
                 led = min(led, anew, key=cost_of)
         yield led
+        # What stands for a cause that is in no place is as likely to be in all of its own.
+        alike = state if led.state is None else led.state.alike()
+        if led.left < noise_of(system) and alike is not led.state and not _has_places(law, one):
+            yield lead_from(system, led, alike)
+
+
+def _has_places(law: Followed, rival: Scored) -> bool:
+    """Whether the cause that a rival stands for may be in some of several places."""
+    assert law.state is not None
+    (known,) = {*law.names} - {*rival.hypothesis.names}
+    return law.state.candidates[known].spreads
 
 
 def _as_strong(system: System, law: Followed, state: State, *, same: bool) -> State | None:
