@@ -10,6 +10,7 @@ from analysis.engine.all_samples import (
     farthest_first,
     tells_more,
 )
+from analysis.engine.clear_part import clear_part
 from analysis.engine.cycles import valley
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
@@ -22,7 +23,7 @@ from analysis.engine.more_leader import FAR_BEHIND
 from analysis.engine.part import has_several
 from analysis.engine.refine import Refiner
 from analysis.engine.released import released
-from analysis.engine.ring_fit import FAR, follow_ring
+from analysis.engine.ring_fit import follow_ring
 from analysis.engine.sensitivity import Progress
 from analysis.engine.told_leader import ToldLeader
 
@@ -37,11 +38,6 @@ made them stand for what it is not: the next guesses are led, too."""
 GUESSES = 2
 """So many of them, of other kinds, until one comes there with less; and until one comes farther,
 where the first came no farther than parameters alone."""
-
-SOME, CLEAR = 0.2, (1.1, 1.2, 1.3)
-"""Of the time: what explains as much, when lines were asked before, is looked at in that alone: up
-to where no more than so much is left of the squared misfit of a sample, the least of these with
-which it is that long."""
 
 
 class FollowedSearch(ToldLeader):
@@ -308,30 +304,11 @@ class FollowedSearch(ToldLeader):
 
     @property
     def foretells(self) -> Followed | None:
-        """What foretells a part of the time to the noise, and parameters are hardly bent for it.
-
-        Where they are, it is what came as far as they were not: what grows of itself is followed
-        on in any direction.
-        """
+        """The part of the time that the best foretells to the noise, where it is not at the end."""
         if self._foretold is None or self._foretold[0] is not self._best:
-            self._foretold = self._best, self._clear_part(self._best)
+            clear = None if self.arrived else clear_part(self._samples, self._best)
+            self._foretold = self._best, clear
         return self._foretold[1]
-
-    def _clear_part(self, best: Followed) -> Followed | None:
-        """So much of the time as it foretells to little more than noise, if that is enough."""
-        if best.about is not None and best.strain >= FAR:
-            best = replace(best.about, share=best.about.telling)
-        told = best.state is not None and best.share < 1.0 and best.strain < FAR
-        if not told or self.arrived:
-            return None
-        clear = self._clear(best)
-        return replace(best, share=clear) if clear else None
-
-    def _clear(self, led: Followed) -> float:
-        """Up to which share of the time, of that it came to, little more than noise is left."""
-        shares, left = self._samples.means(led.point, led.share)
-        longest = [float(max(shares[left < most], default=0.0)) for most in CLEAR]
-        return next((one for one in longest if one >= SOME), 0.0)
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""
