@@ -265,3 +265,31 @@ def test_a_rival_in_few_places_that_bends_parameters_is_led_in_all_of_the_causes
         {("rival", "size@a"): 1.0, ("rival", "size@b"): 1.0}, abs=0.1
     )
     assert cost_of(led) < cost_of(end) + 10.0
+
+
+class _AsOne(_AtTwo):
+    """And a third that acts at both places alike."""
+
+    def _seen(self, point: Point) -> Array:
+        both = sum(one.values.get("size", 0.0) for one in point.effects.values())
+        return np.asarray(super()._seen(point) + both * (THERE + ELSE))
+
+
+def test_a_rival_in_few_places_of_a_cause_that_has_none_is_led_in_all_of_its_own_too() -> None:
+    system = _AsOne(cause("law"), two("rival"))
+    (bundle,) = system.bundles
+    system.bundles = (replace(bundle, value=bundle.value + ELSE[:, None]),)
+    known = {one.name: one for one in system.candidates}
+    law = State.at(Hypothesis({"law": Part(("size",))}), {("law", "size"): 1.0}, known)
+    end = follow_ring(system, np.zeros(1), law, everything=True)
+    found = faint(system, end, [known["rival"]])
+    few = Hypothesis({"rival": Part(("size@a",))})
+    (promised,) = exchanged(found, known)
+    at_one = replace(promised.scored, hypothesis=few, values={("rival", "size@a"): 1.0})
+    in_few, in_all = rivals(system, found, known, [Exchange(promised.ahead, at_one)])
+    assert cost_of(in_few) > cost_of(end) + 100.0, "a parameter makes up for the other place"
+    assert in_all.state is not None
+    assert in_all.state.term_values() == pytest.approx(
+        {("rival", "size@a"): 1.0, ("rival", "size@b"): 1.0}, abs=0.1
+    )
+    assert cost_of(in_all) < cost_of(end) + 10.0
