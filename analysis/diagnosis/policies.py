@@ -41,7 +41,8 @@ class Policy:
 
 def _friction(**shapes: tuple[float, ...]) -> Policy:
     """Of a law whose bristles were left bent by what came before the run."""
-    return Policy(shapes={**shapes, "bristle_loss_s": (5e-4,)}, begins=("bent_at_rest",))
+    own = {"bristle_loss_s": (5e-4,), "dahl_exponent": (1.0,)}
+    return Policy(shapes={**shapes, **own}, begins=("bent_at_rest",))
 
 
 POLICIES: dict[str, Policy] = {
@@ -185,6 +186,7 @@ WHOLE = (
 
 BETWEEN = (
     "bend",
+    "dahl_exponent",
     "counted_share",
     "drive_stays_share",
     "quadratic_share",

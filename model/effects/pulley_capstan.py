@@ -5,6 +5,7 @@ from typing import Any
 from model.library.bristle import (
     BENT_AT_REST,
     BRISTLE_LOSS,
+    DAHL_EXPONENT,
     LONGEST_STEP_S,
     bent,
     held,
@@ -28,6 +29,7 @@ def pull(
     presliding_m: Any,
     loaded_share: Any,
     bristle_loss_s: Any,
+    dahl_exponent: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -36,8 +38,8 @@ def pull(
 ) -> Any:
     """T (exp(mu theta (h(z) + t_b z')/g) - 1), less what it holds at rest."""
     level = _level(loaded_share, before_pulley, pretension)
-    turned = held(bristle + bent_at_rest, axial_velocity, presliding_m, level)
-    rate = bent(bristle + bent_at_rest, axial_velocity, presliding_m, level)
+    turned = held(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
+    rate = bent(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
     grip = friction * wrap_rad
     now = _more(grip * (turned + bristle_loss_s * rate) / level)
     return before_pulley * now - pretension * _more(grip * bent_at_rest)
@@ -51,6 +53,7 @@ def _more(a: Any) -> Any:
 def rates(
     presliding_m: Any,
     loaded_share: Any,
+    dahl_exponent: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -59,7 +62,7 @@ def rates(
 ) -> Any:
     """Z follows g sgn v within x_s."""
     level = _level(loaded_share, before_pulley, pretension)
-    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level)
+    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
 
 
 def steepest(
@@ -79,8 +82,8 @@ EFFECT = Effect(
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
     equation="T += T (exp(mu theta (h + t_b z')/g) - 1) - T_0 (exp(mu theta z_0) - 1), "
-    "z' = (v - |v| z/g)/y, g = l + (1 - l) T/T_0, t = 0.5 ms, "
-    "h = w z + (1 - w) g sgn v, w = x_s/y, y = (x_s^4 + (v t)^4)^(1/4)",
+    "z' = v d^a/y, d = 1 - z sgn v/g, g = l + (1 - l) T/T_0, "
+    "h = w z + (1 - w) g sgn v, w = x_s/y, y = (x_s^4 + (c v t)^4)^(1/4), c t = (3 a - 2) 0.5 ms",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",
@@ -90,6 +93,7 @@ EFFECT = Effect(
         Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
         Parameter("loaded_share", "1", 1.0, 0.0, 1.0, "l: 1, load makes a bristle stiffer; 0: not"),
         BRISTLE_LOSS,
+        DAHL_EXPONENT,
         BENT_AT_REST,
     ),
     states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),

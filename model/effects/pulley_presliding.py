@@ -2,7 +2,17 @@
 
 from typing import Any
 
-from model.library.bristle import BENT_AT_REST, BRISTLE_LOSS, bent, steepest, stiffest
+import numpy as np
+
+from model.library.bristle import (
+    BENT_AT_REST,
+    BRISTLE_LOSS,
+    DAHL_EXPONENT,
+    bent,
+    eased,
+    steepest,
+    stiffest,
+)
 from model.library.effect import Acts, Effect, Parameter, State
 from model.library.smooth import smooth_sign
 
@@ -14,17 +24,19 @@ def rates(
     coulomb_n: Any,
     presliding_m: Any,
     far_share: Any,
+    dahl_exponent: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
     stiffness: Any,
 ) -> Any:
-    """Give z' = (s' - |s'| z) / x_s, with s' the share of v that reaches the slider."""
+    """Give z' = s' (1 - z sgn v)^a / x_s, with s' the share of v that reaches the slider."""
     z = bristle + bent_at_rest
     toward = 1.0 - z * smooth_sign(axial_velocity, ROUNDING_M_PER_S)
+    toward = toward * eased(np.abs(toward), dahl_exponent)
     held = coulomb_n * far_share * (1.0 - far_share) * toward / (presliding_m * stiffness)
     slip = far_share * axial_velocity / (1.0 + held)
-    return bent(z, slip, presliding_m, 1.0)
+    return bent(z, slip, presliding_m, 1.0, dahl_exponent)
 
 
 def behind(
@@ -32,6 +44,7 @@ def behind(
     presliding_m: Any,
     far_share: Any,
     bristle_loss_s: Any,
+    dahl_exponent: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -39,7 +52,14 @@ def behind(
 ) -> Any:
     """F_c (z - z_0 + t_b z'): the whole of it stands between the two sides of the pulley."""
     rate = rates(
-        coulomb_n, presliding_m, far_share, bent_at_rest, bristle, axial_velocity, stiffness
+        coulomb_n,
+        presliding_m,
+        far_share,
+        dahl_exponent,
+        bent_at_rest,
+        bristle,
+        axial_velocity,
+        stiffness,
     )
     return coulomb_n * (bristle + bristle_loss_s * rate)
 
@@ -49,6 +69,7 @@ def pull(
     presliding_m: Any,
     far_share: Any,
     bristle_loss_s: Any,
+    dahl_exponent: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -60,6 +81,7 @@ def pull(
         presliding_m,
         far_share,
         bristle_loss_s,
+        dahl_exponent,
         bent_at_rest,
         bristle,
         axial_velocity,
@@ -71,8 +93,9 @@ EFFECT = Effect(
     name="pulley_presliding",
     title="presliding friction at the pulley, cable elastic on both sides",
     acts=Acts.PULLEY,
-    equation="T += r F_c (z - z_0 + t_b z'), z' = (s' - |s'| z)/sqrt(x_s^2 + (s' t)^2), s' = r v / "
-    "(1 + F_c r (1-r)(1 - z sgn v)/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, t = 0.5 ms",
+    equation="T += r F_c (z - z_0 + t_b z'), z' = s' d^a/y, d = 1 - z sgn v, s' = r v / "
+    "(1 + F_c r (1-r) d^a/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, "
+    "y = (x_s^4 + (c s' t)^4)^(1/4), c t = (3 a - 2) 0.5 ms",
     source="Dahl, Aerospace Corp. TOR-0158 (1968); Canudas de Wit et al., IEEE TAC 40 (1995) 419",
     signature="rounded reversal; a loop at small amplitude; below x_s it looks like stiffness",
     parameters=(
@@ -80,6 +103,7 @@ EFFECT = Effect(
         Parameter("presliding_m", "m", 6e-4, 2e-4, 5e-3, "x_s"),
         Parameter("far_share", "1", 1.0, 0.05, 1.0, "r: the give beyond the pulley, of all"),
         BRISTLE_LOSS,
+        DAHL_EXPONENT,
         BENT_AT_REST,
     ),
     states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),

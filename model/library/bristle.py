@@ -27,14 +27,19 @@ BRISTLE_LOSS = Parameter(
     "bristle_loss_s", "s", 5e-4, 0.0, 5e-3, "t_b, loss of the bristle over its stiffness"
 )
 
+DAHL_EXPONENT = Parameter(
+    "dahl_exponent", "1", 1.0, 1.0, 2.0, "a: how a bristle eases as it nears where it slips"
+)
+"""Of 1 - z sgn v (Dahl, AIAA J. 14 (1976) 1675): 1 in LuGre's law, 1.5 of ball bearings."""
+
 BENT_AT_REST = Parameter(
     "bent_at_rest", "1", 0.0, -1.0, 1.0, "z_0, z at rest; what it holds there is pretension"
 )
 """The state of a bristle is z - z_0, which begins at zero: whatever came before left it bent."""
 
 
-def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
-    """Give z' = (v - |v| z / g) / (x_s^4 + (v t)^4)^(1/4).
+def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any) -> Any:
+    """Give z' = v (1 - s z/g)^a / (x_s^4 + (c v t)^4)^(1/4), with s = sgn v and c = 3 a - 2.
 
     Parameters
     ----------
@@ -46,30 +51,53 @@ def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
         x_s, the way that bends it, m.
     level
         g, the friction at this speed over the constant one.
+    exponent
+        a, from 1 to 2.
     """
     size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
-    return (slip - size * bristle / level) / _way(size, presliding_m)
+    toward = slip - size * bristle / level
+    return toward * eased(np.abs(toward) / size, exponent) / _way(size, presliding_m, exponent)
 
 
-def held(bristle: Any, slip: Any, presliding_m: Any, level: Any) -> Any:
+def eased(toward: Any, exponent: Any) -> Any:
+    """Give d^(a - 1): exact for a of 1, 1.5 and 2, and a parabola through these in between.
+
+    Parameters
+    ----------
+    toward
+        d, how far a bristle is from where it slips, over how far constant friction bends it; beyond
+        2, from where it slips the other way, as at 2.
+    exponent
+        a.
+    """
+    more = exponent - 1.0
+    near = np.minimum(toward, 2.0)
+    eases = 4.0 * more * (1.0 - more) * np.sqrt(near) + more * (2.0 * more - 1.0) * near
+    return (1.0 - more) * (1.0 - 2.0 * more) + eases
+
+
+def held(bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any) -> Any:
     """What a bristle that is bent by z holds: w of z, and 1 - w of g sgn v, which it turns to.
 
-    With w = x_s / (x_s^4 + (v t)^4)^(1/4) that is, to first order of t, what a bristle would hold
+    With w = x_s / (x_s^4 + (c v t)^4)^(1/4) that is, to first order of t, what a bristle would hold
     that turns over at once: of one that sticks all of z, of one that slips the friction itself.
 
     Parameters
     ----------
-    bristle, slip, presliding_m, level
+    bristle, slip, presliding_m, level, exponent
         As for `bent`.
     """
     size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
-    sticks = presliding_m / _way(size, presliding_m)
+    sticks = presliding_m / _way(size, presliding_m, exponent)
     return sticks * bristle + (1.0 - sticks) * level * slip / size
 
 
-def _way(size: Any, presliding_m: Any) -> Any:
-    """(x_s^4 + (v t)^4)^(1/4): the way that bends a bristle, however slow it may turn over, m."""
-    caught = CATCHES_S * size
+def _way(size: Any, presliding_m: Any, exponent: Any) -> Any:
+    """(x_s^4 + (c v t)^4)^(1/4): the way that bends a bristle, however slow it may turn over, m.
+
+    It turns over fastest as it is bent back, c times as fast as LuGre's.
+    """
+    caught = (3.0 * exponent - 2.0) * CATCHES_S * size
     stuck, slid = presliding_m * presliding_m, caught * caught
     return np.sqrt(np.sqrt(stuck * stuck + slid * slid))
 

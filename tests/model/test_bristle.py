@@ -5,7 +5,7 @@ import pytest
 
 from cdpr8.rigfile import Excitation, load_rig, packaged_rig_path
 from model import ActiveEffect, simulate
-from model.library.bristle import bent, held
+from model.library.bristle import bent, eased, held
 from model.library.discovery import library
 from model.library.smooth import gaussian
 from tests.model.harness import cable_response
@@ -115,19 +115,34 @@ def test_a_bristle_bent_at_rest_holds_nothing_beside_the_pretension(name: str) -
     assert np.abs(drift).max() < 0.01 * 0.7 * 0.3
 
 
-def test_friction_that_slips_is_what_a_bristle_without_delay_holds() -> None:
-    """LuGre's own law, by short steps, against the one whose bristles turn over slowly."""
-    presliding_m, step_s = 5e-6, 1e-6
+@pytest.mark.parametrize(
+    ("exponent", "presliding_m", "most"),
+    [(1.0, 5e-6, 0.012), (1.5, 5e-5, 0.012), (2.0, 5e-5, 0.03)],
+)
+def test_friction_that_slips_is_what_a_bristle_without_delay_holds(
+    exponent: float, presliding_m: float, most: float
+) -> None:
+    """LuGre's law and Dahl's, by short steps, against the one whose bristles turn over slowly."""
+    step_s = 1e-6
     time_s = np.arange(0.0, 0.25, step_s)
     slip = 0.08 * np.sin(2.0 * np.pi * 8.0 * time_s)
     level = 1.0 + 0.8 * np.exp(-((slip / 0.02) ** 2))
     exact, ours = 0.0, 0.0
     missed, late = [], []
-    for v, g in zip(slip, level, strict=True):
+    for v, g in zip(slip.tolist(), level.tolist(), strict=True):
         late.append(ours - exact)
-        missed.append(held(ours, v, presliding_m, g) - exact)
-        exact += step_s * (v - abs(v) * exact / g) / presliding_m
-        ours += step_s * bent(ours, v, presliding_m, g)
+        missed.append(held(ours, v, presliding_m, g, exponent) - exact)
+        toward = 1.0 - exact / (g if v >= 0.0 else -g)
+        exact += step_s * v * np.sign(toward) * abs(toward) ** exponent / presliding_m
+        ours += step_s * bent(ours, v, presliding_m, g, exponent)
     rms = [float(np.sqrt(np.mean(np.square(one)))) for one in (missed, late)]
-    assert rms[0] < 0.012
+    assert rms[0] < most
     assert rms[0] < rms[1]
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.25, 1.5, 1.75, 2.0])
+def test_a_bristle_eases_as_by_dahls_exponent(exponent: float) -> None:
+    toward = np.linspace(0.0, 2.0, 401)
+    off = toward * eased(toward, exponent) - toward**exponent
+    exact = 2.0 * exponent % 1.0 == 0.0
+    assert np.abs(off).max() < (1e-12 if exact else 0.02)
