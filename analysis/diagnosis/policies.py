@@ -95,7 +95,8 @@ POLICIES: dict[str, Policy] = {
     "cable_end_forcing": Policy(
         shapes={"reaction_share": (0.0, 1.0)}, together=True, form_share=0.2
     ),
-    "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0), "frame_loss": (0.03,)}),
+    # A stiff post gives way at once, and what it stands on loses.
+    "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0, 120.0), "frame_loss": (0.03, 0.6)}),
     "pulley_coulomb": _friction(presliding_m=(5e-5,)),
     "pulley_capstan": _friction(presliding_m=(5e-5,), loaded_share=(0.5,)),
     "pulley_presliding": _friction(presliding_m=(6e-4, 2.4e-3)),
@@ -130,8 +131,8 @@ POLICIES: dict[str, Policy] = {
         shapes={"before_share": (0.0, 0.12), "depth_share": (0.0, 1.0), "reads_up": (0.0, 1.0)},
         form_share=LINEAR,
     ),
-    # A filter's second pole is told once it is there.
-    "cell_lag": Policy(steps={"lag_s": 0.003}, shapes={"second_share": (0.0,)}, form_share=LINEAR),
+    # Of which order a filter is, is told once it is there.
+    "cell_lag": Policy(steps={"lag_s": 0.003}, shapes={"second_order": (0.0,)}, form_share=LINEAR),
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     # What disturbs the platform as its motion begins need not wait for a drive that is late.
     "drive_phase": Policy(steps={"late_s": 0.003}, shapes={"disturbed_late_share": (1.0, 0.0)}),
@@ -195,13 +196,15 @@ BETWEEN = (
     "reaction_share",
     "depth_share",
     "servo_s",
+    "grip_s",
+    "frame_hz",
     "front_share",
     "let_go_share",
     "ramps_kept_share",
     "highest_hz",
 )
 """Shapes that lead from one law to another: a row of branches, to one whose end is out of sight; a
-servo, to one that is too quick to be seen."""
+servo, a grip or a post, to one that is too quick to be seen."""
 
 GROWING = ("camera_exposure", "cable_sag", "cable_end_forcing")
 """What it does goes with the square of its magnitude."""

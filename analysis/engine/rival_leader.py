@@ -246,7 +246,7 @@ class RivalLeader(Leader):
         for names, (asked, promised) in waiting.items():
             self._exchanged.add(names)
             behind = (cost_of(asked.followed) - cost_of(before) - CLOSE) / 2.0
-            least = max(behind / float(asked.problem.base.mean()), 0.0)
+            least = behind / float(asked.problem.base.mean())
             ahead = fresh([one for one in promised if one.ahead > least], self._in_place)
             for one in rivals(self._system, asked, self._refiner.candidates, ahead):
                 self._keep(one)

@@ -7,22 +7,26 @@ import numpy as np
 from model.library.effect import Acts, Effect, Parameter
 
 
-def measure(time_s: Any, tension_n: Any, lag_s: Any, second_share: Any) -> Any:
-    """Low-passes in a row, each exact for straight lines between the times, which are even.
+def measure(time_s: Any, tension_n: Any, lag_s: Any, second_order: Any) -> Any:
+    """A low-pass of second order, exact for straight lines between the times, which are even.
 
-    T_1' = (T - T_1) / ((1 - s) tau), T_m' = (T_1 - T_m) / (s tau): s is the share of the second.
+    It is two of first order in a row, of the times (1 - s) tau and s tau with s (1 - s) = q, which
+    are conjugate where it overshoots.
     """
     lagged = tension_n.copy()
-    step_s, second = np.mean(np.diff(time_s)), np.broadcast_to(second_share, np.shape(lag_s))
+    step_s, order = np.mean(np.diff(time_s)), np.broadcast_to(second_order, np.shape(lag_s))
     for i in np.flatnonzero(lag_s):
-        for share in (1.0 - second[i], second[i]):
-            if share > 0.0:
-                lagged[:, i] = _low_pass(lagged[:, i], step_s / (share * lag_s[i]))
+        late = tension_n[:, i]
+        second = 0.5 - 0.5 * np.emath.sqrt(1.0 - 4.0 * order[i])
+        for share in (1.0 - second, second):
+            if share != 0.0:
+                late = _low_pass(late, step_s / (share * lag_s[i]))
+        lagged[:, i] = late.real
     return lagged
 
 
-def _low_pass(values: Any, steps: float) -> Any:
-    """A low-pass of first order; steps are in units of its time."""
+def _low_pass(values: Any, steps: Any) -> Any:
+    """A low-pass of first order; steps are in units of its time, which may be complex."""
     from scipy.signal import lfilter
 
     kept = np.exp(-steps)
@@ -34,13 +38,19 @@ EFFECT = Effect(
     name="cell_lag",
     title="lag of the cell",
     acts=Acts.CELL,
-    equation="T_1' = (T - T_1)/((1 - s) tau), T_m' = (T_1 - T_m)/(s tau)",
+    equation="T_m + tau T_m' + q tau^2 T_m'' = T",
     source="amplifier manual of the force cells; design, section 6",
     signature="quadrature in proportion to frequency, of one channel; T lags elongation",
     parameters=(
         Parameter("lag_s", "s", 5e-3, 0.0, 0.2, "tau", magnitude=True),
         Parameter(
-            "second_share", "1", 0.0, 0.0, 0.5, "share of the lag in a second pole, s", False
+            "second_order",
+            "1",
+            0.0,
+            0.0,
+            0.7,
+            "q: 0 one pole; 1/4 two alike; of filters Bessel's 1/3, Butterworth's 1/2",
+            False,
         ),
     ),
     measure=measure,

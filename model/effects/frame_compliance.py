@@ -69,8 +69,8 @@ EFFECT = Effect(
     signature="the same loss of stiffness in cables that share a post; a line at the frame's mode",
     parameters=(
         Parameter("compliance_m_per_n", "m/N", 2e-5, 0.0, 3e-4, "C", magnitude=True),
-        Parameter("frame_hz", "Hz", 25.0, 5.0, 60.0, "w / 2 pi"),
-        Parameter("frame_loss", "1", 0.03, 5e-3, 0.5, "zeta"),
+        Parameter("frame_hz", "Hz", 25.0, 5.0, 150.0, "w / 2 pi"),
+        Parameter("frame_loss", "1", 0.03, 5e-3, 1.0, "zeta"),
     ),
     states=(
         *(

@@ -60,15 +60,16 @@ def test_a_cell_spoils_its_own_channel_as_it_says(
     assert np.abs(seen - TENSION[:, 2]).max() > 1e-3
 
 
-@pytest.mark.parametrize("share", [0.25, 0.5])
-def test_a_lag_of_two_poles_is_two_low_passes_in_a_row(share: float) -> None:
+@pytest.mark.parametrize("order", [0.1875, 0.25, 1.0 / 3.0, 0.5])
+def test_a_lag_of_second_order_has_the_gain_and_phase_of_its_filter(order: float) -> None:
+    """Two poles apart, two alike, Bessel's and Butterworth's."""
     lag_s = np.where(np.arange(8) == 2, 0.02, 0.0)
-    seen = library()["cell_lag"].measure(TIME_S, TENSION, lag_s=lag_s, second_share=share)
+    seen = library()["cell_lag"].measure(TIME_S, TENSION, lag_s=lag_s, second_order=order)
     last = TIME_S >= 2.0
     wave = np.exp(-1j * CIRCULAR * TIME_S[last])[:-1]
     answer = (seen[last, 2][:-1] @ wave) / (TENSION[last, 2][:-1] @ wave)
-    first, second = (1.0 + 0.02j * one * CIRCULAR for one in (1.0 - share, share))
-    assert abs(answer - 1.0 / (first * second)) < 2e-4
+    late = 0.02j * CIRCULAR
+    assert abs(answer - 1.0 / (1.0 + late + order * late**2)) < 2e-4
     assert seen[0, 2] == TENSION[0, 2], "it has settled before"
 
 
