@@ -32,11 +32,6 @@ main = entry(app)
 LARGEST_SEED = 2**63 - 1
 
 
-@app.callback()
-def _rig() -> None:
-    pass
-
-
 @app.command("record")
 def record_command(
     duration: Annotated[

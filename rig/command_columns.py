@@ -238,11 +238,8 @@ def _split(text: str, separator: str | None) -> list[str]:
 def _number(cell: str, separator: str | None) -> float | None:
     """A number, with a decimal comma where no comma parts columns; or a date and time, in s."""
     spelled = cell if separator == "," else cell.replace(",", ".")
-    try:
+    with suppress(ValueError):
         number = float(spelled)
-    except ValueError:
-        pass
-    else:
         return number if math.isfinite(number) else None
     try:
         return datetime.fromisoformat(cell).timestamp()

@@ -1,5 +1,6 @@
 """Dates and times of day as other programs write them."""
 
+from contextlib import suppress
 from datetime import UTC, datetime
 
 FORMATS = (
@@ -23,15 +24,11 @@ def date_s(cell: str) -> float | None:
     if ":" not in cell:
         return None
     spelled = cell.strip().replace(",", ".")
-    try:
+    with suppress(ValueError):
         return _utc_s(datetime.fromisoformat(spelled))
-    except ValueError:
-        pass
     for form in FORMATS:
-        try:
+        with suppress(ValueError):
             return _utc_s(datetime.strptime(spelled, form))
-        except ValueError:
-            continue
     return None
 
 

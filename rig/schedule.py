@@ -68,7 +68,7 @@ def run_in_threads(
             prefer_this_thread()
         try:
             while not halt.is_set() and stream.step():
-                pass
+                pass  # a step is all the work
         except Exception as error:  # raised again below, on the main thread
             faults.append(error)
 

@@ -144,9 +144,10 @@ def _in_range(name: str, parameter: Parameter, value: Value) -> Value:
     within = (values >= parameter.low) & (values <= parameter.high)
     if not within.all():
         wrong = float(values[~within][0])
+        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
         raise UsageError(
             f"{name}: {parameter.name} = {wrong:g} is not plausible",
-            allowed=f"{parameter.low:g} to {parameter.high:g} {parameter.unit}",
+            allowed=f"{parameter.low:g} to {parameter.high:g}{unit}",
         )
     return float(values[0]) if values.size == 1 else tuple(float(one) for one in values)
 
