@@ -91,7 +91,9 @@ def test_implausible_values_are_refused_with_the_range(effect: Effect) -> None:
         for wrong in (parameter.low - 1.0, parameter.high + 1.0):
             with pytest.raises(UsageError) as caught:
                 ActiveEffect(effect.name, {parameter.name: wrong})
-            assert f"{parameter.low:g} to {parameter.high:g} {parameter.unit}" in str(caught.value)
+            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+            allowed = f"allowed: {parameter.low:g} to {parameter.high:g}{unit}"
+            assert allowed in str(caught.value).splitlines()[1]
 
 
 def test_scalar_and_lane_kernel_agree_on_every_effect(rig: Rig) -> None:
