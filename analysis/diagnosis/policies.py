@@ -199,12 +199,14 @@ BETWEEN = (
     "grip_s",
     "frame_hz",
     "front_share",
+    "middle_share",
     "let_go_share",
     "ramps_kept_share",
     "highest_hz",
 )
 """Shapes that lead from one law to another: a row of branches, to one whose end is out of sight; a
-servo, a grip or a post, to one that is too quick to be seen."""
+servo, a grip or a post, to one that is too quick to be seen; a gap, to one at whose end the hook
+hangs."""
 
 GROWING = ("camera_exposure", "cable_sag", "cable_end_forcing")
 """What it does goes with the square of its magnitude."""

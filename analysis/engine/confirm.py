@@ -11,6 +11,7 @@ from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed
+from analysis.engine.known import Known
 from analysis.engine.part import Part, records_of, rings
 from analysis.engine.ring_fit import EFFORT, follow_ring
 from analysis.engine.search import Search
@@ -24,6 +25,12 @@ RINGS: tuple[Ring, ...] = ("left_out", "as_is")
 NEARLY = 1.2
 """From where all of the data led, the used part leads in a few steps: none is begun after so many
 simulations for each free number, a little more than all differences take once."""
+
+MOVED = 1.0
+"""Parameters that have moved by no more than this, in sigmas, have done nothing by themselves."""
+
+CERTAIN = 1e8
+"""What stays where it is known to be is known ten thousand times better than is stated."""
 
 MOST_STEPS = 30
 """Of parameters alone, to where they fit."""
@@ -39,9 +46,9 @@ class Confirmation:
     Attributes
     ----------
     before, after
-        Nothing left out, parameters fitted within their priors; and the chosen hypothesis, fitted
-        to the used part: part of the data ("used", "held_out") -> kind of channel -> rms of the
-        residual over the noise.
+        Nothing left out, parameters fitted within their priors, and numbers that the hypothesis
+        names as they are known; and the chosen hypothesis, fitted to the used part: part of the
+        data ("used", "held_out") -> kind of channel -> rms of the residual over the noise.
     held_record
         The recording that was kept back whole; "" where there are too few.
     held_values
@@ -60,7 +67,9 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     Recordings that stand aside are left out.
 
     Before is the system at its likeliest parameters. Those of one that rings have seen all of the
-    data, which favours it; those of another are fitted to the used part, as the hypothesis's are.
+    data, which favours it, and what the hypothesis says to be off is where it was known to be:
+    else they had done by themselves what it says. Those of another are fitted to the used part, as
+    the hypothesis's are.
 
     Parameters
     ----------
@@ -76,12 +85,17 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     held = "" if sealed or len(records) < LEAST_RECORDS else _held(search.system, records)
     start = search.calibrated.at
     if search.faint:
-        start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
+        null = next(one for one in search.fitted if not one.hypothesis.parts)
+        start = null.point.nuisance
     if part is not None:
         system, start = part, part.own(start)
+    named = _named(system, chosen)
     if not rings(system):
         alone = _parameters_alone(search, _used(search, held))
         before = after = _errors(system, alone, None, held, near=False)
+    elif search.faint and named and np.abs(start[named]).max() > MOVED:
+        alone, known = _as_known(start, named)
+        before = after = _errors(system, alone, None, held, near=True, known=known)
     elif search.faint and chosen.hypothesis.parts:
         before = after = _least(system, _tried(start, None), held)
     else:
@@ -94,6 +108,23 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
         nuisance = again.point.nuisance if part is None else part.own(again.point.nuisance)
         after = _errors(system, nuisance, again.state, held, near=search.faint)
     return Confirmation(before, after, held, _held_values(system.bundles, held))
+
+
+def _named(system: System, chosen: Fitted) -> list[int]:
+    """Nuisances that are numbers of a hypothesis."""
+    parts = chosen.hypothesis.parts
+    return [
+        i
+        for i, one in enumerate(system.nuisances)
+        if (named := parts.get(one.cause or "")) and one.term in named.terms
+    ]
+
+
+def _as_known(at: Array, which: Sequence[int]) -> tuple[Array, Known]:
+    """Parameters, some of them where they are known to be, shape (p,), and held there."""
+    nuisance, certain = at.copy(), np.ones(len(at))
+    nuisance[which], certain[which] = 0.0, CERTAIN
+    return nuisance, Known(np.zeros(len(at)), np.diag(certain))
 
 
 def _parameters_alone(search: Search, used: NDArray[np.bool_]) -> Array:
@@ -144,15 +175,21 @@ def _held(system: System, records: Sequence[str]) -> str:
 
 
 def _errors(
-    system: System, nuisance: Array, state: State | None, held: str, *, near: bool
+    system: System,
+    nuisance: Array,
+    state: State | None,
+    held: str,
+    *,
+    near: bool,
+    known: Known | None = None,
 ) -> dict[str, dict[str, float]]:
     """Without the system's own ring, with it, or led to its phase: what fits the used part best."""
     tried = _tried(nuisance, state)
     if rings(system):
         most = NEARLY * len(Followed(nuisance, state).numbers) if near else EFFORT
-        led = follow_ring(system, nuisance, state, held=held, near=near, most=most)
+        led = follow_ring(system, nuisance, state, held=held, near=near, most=most, known=known)
         if near and led.share < 1.0:
-            led = follow_ring(system, nuisance, state, held=held)
+            led = follow_ring(system, nuisance, state, held=held, known=known)
         tried.append(led.point)
     return _least(system, tried, held)
 

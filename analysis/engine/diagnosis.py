@@ -184,7 +184,7 @@ def diagnose(
     aside = len(searched.aside) / len(records_of(system))
     judgement = judge(
         searched.fitted, candidates, lost=searched.lost, noise=noise, aside=aside,
-        settled=not rings(system), moved=searched.moved,
+        settled=not rings(system), moved=searched.moved, beside=searched.beside,
     )  # fmt: skip
     far = [] if rings(system) else _moved_far(system, judgement)
     for one, sigmas in far:

@@ -12,7 +12,7 @@ from analysis.engine.candidate import Candidate
 from analysis.engine.cause import Cause, cause_of, doubted, within_sigma
 from analysis.engine.doubt import doubt_beside, doubt_of, hardly_explains
 from analysis.engine.fitted import Fitted
-from analysis.engine.moved import rise_of
+from analysis.engine.moved import Beside, raised, rise_of
 from analysis.engine.weights import temper_of, weights_of
 
 NEGLIGIBLE, STANDS_OUT = 0.02, 15.0
@@ -84,6 +84,7 @@ def judge(
     noise: float = NOISE,
     aside: float = 0.0,
     moved: Mapping[str, float] | None = None,
+    beside: Beside | None = None,
     settled: bool = False,
 ) -> Judgement:
     """Weigh the fitted hypotheses.
@@ -103,6 +104,8 @@ def judge(
     moved
         Numbers that nothing left out has moved too far, and by how many sigmas; None: they were not
         led to the noise.
+    beside
+        Numbers that others have moved too far: see `released_beside`.
     settled
         The system does not ring: what hypotheses leave is of where they stay (`settled`), and is
         held against what nothing leaves.
@@ -125,6 +128,7 @@ def judge(
     nothing = nothing if np.isfinite(nothing) else scores.max()
     scores = _moved(scores, fitted, candidates, moved or {}, nothing)
     weights = weights_of(scores, fitted, candidates, nothing, noise, settled=settled)
+    weights = raised(weights, fitted, candidates, beside or {})
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )

@@ -70,8 +70,9 @@ class MoreLeader(RivalLeader):
             return False
         self._asked_more = True
         found = self._faint(best)
+        least = EXPLAINS if best.to_end and found.followed.telling == 1.0 else 0.0
         promised: dict[str, list[Scored]] = {}
-        for scored in one_more(found, refiner, EXPLAINS if best.to_end else 0.0):
+        for scored in one_more(found, refiner, least):
             if best.to_end and best.strain < FAR and not self._would_tell(found, scored):
                 continue
             (added,) = set(scored.hypothesis.names) - set(best.names)

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import expit
 from scipy.stats import chi2, norm
 
 from analysis.engine.array import Array
@@ -22,6 +23,11 @@ from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
 from analysis.engine.sure import as_sure
 from analysis.engine.system import Nuisance, System
+from analysis.engine.weights import temper_of
+
+Beside = Mapping[tuple[str, ...], tuple[str, float]]
+"""Names of a hypothesis -> which of its causes is a number of the machine that the others moved too
+far, and by how many sigmas."""
 
 STANDS_OUT = 2.0
 """Of its numbers those that moved by more than this are released, or the one that moved most."""
@@ -31,6 +37,9 @@ EFFORT = 400.0
 
 EVEN = 3.0
 """A number that has moved by so many sigmas is as likely off as not (design, section 6, step 2)."""
+
+CONTENDERS, NEARLY = 4, 0.2
+"""Beside so many of the likeliest, that leave no more of a sample, squared, beyond noise."""
 
 
 def moved_far(nuisances: Sequence[Nuisance], at: Array) -> dict[str, float]:
@@ -103,23 +112,113 @@ def freed(
     return Followed(nuisance, State.at(hypothesis, on | values, candidates))
 
 
-def released(refiner: Refiner, null: Fitted, cause: str) -> Fitted:
+def released(refiner: Refiner, base: Fitted, cause: str, *, lead: bool = True) -> Fitted:
     """The hypothesis that a cause's numbers are off, led from where they had moved by themselves.
 
-    Its score is that of nothing: how likely it is, is told by how far they had moved.
+    Its score is that of what was on before: how likely it is, is told by how far they had moved.
 
     Parameters
     ----------
     refiner
         Makes it.
-    null
-        Nothing left out, led to the noise.
+    base
+        Nothing left out, or what is on beside it, led to the noise.
     cause
-        A candidate whose numbers are nuisances, and have moved.
+        A candidate whose numbers are nuisances, and have moved; it is not on.
+    lead
+        Whether it is led on from there: what was known of the numbers holds them back no more.
     """
     system = refiner.system
-    start = freed(system, refiner.candidates, Followed(null.point.nuisance, None), cause)
-    led = follow_ring(system, start.nuisance, start.state, everything=True, near=True, most=EFFORT)
+    on = base.state if base.hypothesis.parts else None
+    start = freed(system, refiner.candidates, Followed(base.point.nuisance, on), cause)
+    led = replace(start, left=base.left)
+    if lead:
+        led = follow_ring(
+            system, start.nuisance, start.state, everything=True, near=True, most=EFFORT
+        )
     assert led.state is not None
-    there = as_sure(refiner, refiner.standing(led.state, led.nuisance), led, max(null.left, 1.0))
-    return replace(there, log_score=null.log_score, left=min(led.left, null.left))
+    there = as_sure(refiner, refiner.standing(led.state, led.nuisance), led, max(base.left, 1.0))
+    return replace(there, log_score=base.log_score, left=min(led.left, base.left))
+
+
+def released_beside(
+    refiner: Refiner, fitted: Sequence[Fitted], noise: float, most_causes: int
+) -> tuple[list[Fitted], Beside]:
+    """Beside the likeliest hypothesis, and what contends with it, a number that it moved too far.
+
+    Parameters
+    ----------
+    refiner
+        Makes them.
+    fitted
+        Hypotheses, the likeliest first.
+    noise
+        The squared misfit of a sample that noise leaves: what leaves more may be a wrong law, for
+        which parameters make up.
+    most_causes
+        Of a hypothesis.
+
+    Returns
+    -------
+    list, dict
+        Hypotheses that are new, and which of them, old and new, are of that kind.
+    """
+    nuisances, known = refiner.system.nuisances, refiner.candidates
+    on = [one for one in fitted if one.hypothesis.parts]
+    named = {one.hypothesis.names for one in fitted}
+    if not on or not on[0].left < noise or len(on[0].hypothesis.parts) >= most_causes:
+        return [], {}
+    best = on[0]
+    far = moved_far(nuisances, best.point.nuisance)
+    free = far.keys() & known.keys() - set(best.hypothesis.names)
+    cause = max(free, key=lambda one: far[one], default="")
+    new: list[Fitted] = []
+    beside: dict[tuple[str, ...], tuple[str, float]] = {}
+    for one in on[:CONTENDERS] if cause else ():
+        fewer = one.hypothesis.names
+        sigmas = moved_far(nuisances, one.point.nuisance).get(cause, 0.0)
+        both = tuple(sorted({*fewer, cause}))
+        if both in beside or not (sigmas and one.left < noise + NEARLY and cause not in fewer):
+            continue
+        beside[both] = cause, sigmas
+        if both not in named:
+            new.append(released(refiner, one, cause, lead=one is best))
+    return new, beside
+
+
+def raised(
+    weights: Array,
+    fitted: Sequence[Fitted],
+    candidates: Mapping[str, Candidate],
+    beside: Beside,
+) -> Array:
+    """Probabilities, a number that moved too far beside others as likely as that says.
+
+    Together with it and without it they are as likely as they were.
+
+    Parameters
+    ----------
+    weights
+        Of each hypothesis, shape (h,).
+    fitted, candidates
+        The hypotheses, and candidates by name.
+    beside
+        See `released_beside`.
+    """
+    found = weights.copy()
+    names = [one.hypothesis.names for one in fitted]
+    for both, (cause, sigmas) in beside.items():
+        fewer = tuple(one for one in both if one != cause)
+        on = np.array([one == both for one in names])
+        off = np.array([one == fewer for one in names])
+        whole = float(found[on | off].sum())
+        if not on.any() or whole == 0.0:
+            continue
+        temper = temper_of(max(candidates[one].form_share for one in fewer))
+        share = float(expit(0.5 * (sigmas**2 - EVEN**2) / temper))
+        had = float(found[on].sum())
+        if had < share * whole:
+            found[off] *= (1.0 - share) * whole / (whole - had)
+            best = max(np.flatnonzero(on), key=lambda i: fitted[int(i)].log_score)
+            found[best] += share * whole - had
+    return found

@@ -15,7 +15,7 @@ from analysis.engine.lens import Lens
 from analysis.engine.limits import Limit, limits_of
 from analysis.engine.look import look
 from analysis.engine.louder import Louder, louder_than_stated
-from analysis.engine.moved import moved_far, released
+from analysis.engine.moved import Beside, moved_far, released, released_beside
 from analysis.engine.opening import from_opening, opening_of
 from analysis.engine.part import has_several, rings
 from analysis.engine.pilot import by_pilot
@@ -56,6 +56,9 @@ class Search:
         Recordings that count for nothing there: what is on could not be led through them.
     moved
         Candidates whose numbers nothing left out has moved too far, and by how many sigmas.
+    beside
+        Names of hypotheses -> which of their causes is such a number beside the others, and by how
+        many sigmas it had moved without.
     limits
         From which size on causes would have been told; none: parameters alone did not come to the
         noise of every sample.
@@ -72,6 +75,7 @@ class Search:
     faint: bool = False
     aside: tuple[str, ...] = ()
     moved: Mapping[str, float] = field(default_factory=dict)
+    beside: Beside = field(default_factory=dict)
     limits: tuple[Limit, ...] = ()
 
     @property
@@ -148,15 +152,13 @@ def search(
         found = found._replace(fitted=_as_stated(found.fitted, system.told))
     alone = next((one for one in found.fitted if not one.hypothesis.parts), null)
     moved = _moved(system, alone) if found.faint or not rings(system) else {}
-    named = {one.hypothesis.names for one in found.fitted}
-    # What does not ring has every single cause among its hypotheses.
-    left = [name for name in moved if (name,) not in named and rings(system)]
-    more = [released(refiner, alone, name) for name in left]
-    fitted = (*found.fitted, *more)
+    released_too, beside = _released(refiner, found.fitted, alone, moved, most_causes)
+    fitted = (*found.fitted, *released_too)
     limits = () if found.alone is None else limits_of(found.alone, refiner.candidates)
     return Search(
         system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
-        faint=found.faint, aside=found.aside, moved=moved, limits=limits,
+        faint=found.faint, aside=found.aside, moved=moved, beside=beside,
+        limits=limits,
     )  # fmt: skip
 
 
@@ -199,6 +201,25 @@ def _as_stated(fitted: Sequence[Fitted], told: Told) -> list[Fitted]:
         for one in fitted
     ]
     return sorted(found, key=lambda one: -one.log_score)
+
+
+def _released(
+    refiner: Refiner,
+    fitted: Sequence[Fitted],
+    alone: Fitted,
+    moved: Mapping[str, float],
+    most_causes: int,
+) -> tuple[list[Fitted], Beside]:
+    """Numbers that moved too far, alone and beside what is likeliest, and which these are.
+
+    What does not ring has all of them among its hypotheses.
+    """
+    if not rings(refiner.system):
+        return [], {}
+    named = {one.hypothesis.names for one in fitted}
+    left = [name for name in moved if (name,) not in named]
+    more, beside = released_beside(refiner, fitted, noise_of(refiner.system), most_causes)
+    return [*more, *(released(refiner, alone, name) for name in left)], beside
 
 
 def _moved(system: System, alone: Fitted) -> dict[str, float]:
