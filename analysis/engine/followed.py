@@ -123,6 +123,27 @@ class Followed:
             return self.nuisance
         return np.concatenate([self.nuisance, self.state.values[list(self.state.free)]])
 
+    def rises_without(self, name: str) -> float:
+        """By how much the cost rises without a cause that is on, to first order; infinity: unknown.
+
+        Parameters
+        ----------
+        name
+            Of the candidate.
+        """
+        if self.information is None or self.state is None:
+            return np.inf
+        count, known = len(self.nuisance), self.information.copy()
+        known[range(count), range(count)] += 1.0
+        _, rows = self.state.shape_rows()
+        known[count:, count:] += rows.T @ rows
+        numbers = [self.state.numbers[i] for i in self.state.free]
+        own = [k for k in self.state.places(name) if numbers[k].shape is None]
+        there = np.array([count + k for k in own], dtype=np.int64)
+        covariance = np.linalg.pinv(known, hermitian=True)[np.ix_(there, there)]
+        sizes = self.numbers[there]
+        return float(sizes @ np.linalg.lstsq(covariance, sizes, rcond=None)[0])
+
     def moved(self, change: Array, share: float) -> "Followed":
         """A share of a step further."""
         count = len(self.nuisance)

@@ -21,7 +21,7 @@ from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.kin import lead_from, lead_instead, part_of_the_way
 from analysis.engine.leader import ARRIVED
 from analysis.engine.part import has_several
-from analysis.engine.ring_fit import BEHIND, FAR
+from analysis.engine.ring_fit import BEHIND, FAR, follow_ring
 from analysis.engine.rival_leader import RivalLeader
 from analysis.engine.screen import Scored
 from analysis.engine.state import State
@@ -41,6 +41,9 @@ GENEROUS = 2.0
 
 CLOSE = 60.0
 """Without a cause that does nothing, the squared misfit rises by no more than this."""
+
+HOLLOW = 20.0
+"""Where it rises by more than this times what differences tell, it was not led to where it fits."""
 
 AS_CLOSE = 6
 """So many of several causes are led without each of these."""
@@ -193,6 +196,15 @@ class MoreLeader(RivalLeader):
             if state.hypothesis.names in known or needed or told:
                 continue
             fewer = lead_from(self._system, whole, state)
+            rises = cost_of(fewer) - cost_of(whole)
+            arrives = fewer.to_end and fewer.left < ARRIVED
+            if arrives and rises > max(CLOSE, HOLLOW * whole.rises_without(name)):
+                # Nearly there, and in a hollow: a cause that is worth so little led into none.
+                again = follow_ring(
+                    self._system, np.zeros_like(whole.nuisance), state, everything=True
+                )
+                effort = fewer.effort + again.effort
+                fewer = replace(min(fewer, again, key=farthest_first), effort=effort)
             self._keep(fewer)
             if cost_of(fewer) > cost_of(whole) + 2.0 * BEHIND:
                 # From about as good a place it would be as far behind.

@@ -166,9 +166,12 @@ def released_beside(
     nuisances, known = refiner.system.nuisances, refiner.candidates
     on = [one for one in fitted if one.hypothesis.parts]
     named = {one.hypothesis.names for one in fitted}
-    if not on or not on[0].left < noise or len(on[0].hypothesis.parts) >= most_causes:
+    nothing = max((one.log_score for one in fitted if one not in on), default=-np.inf)
+    best = max(on, key=lambda one: one.log_score, default=None)
+    if best is None or best.log_score < nothing:
         return [], {}
-    best = on[0]
+    if not best.left < noise or len(best.hypothesis.parts) >= most_causes:
+        return [], {}
     far = moved_far(nuisances, best.point.nuisance)
     free = far.keys() & known.keys() - set(best.hypothesis.names)
     cause = max(free, key=lambda one: far[one], default="")

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.engine.all_samples import cost_of
 from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
@@ -114,3 +115,16 @@ def test_what_had_made_up_for_something_is_led_from_the_likeliest_parameters() -
     assert led.to_end
     assert abs(float(led.nuisance[0])) < 1.0
     assert led.left == pytest.approx(1.0, abs=0.1)
+
+
+def test_what_a_cause_is_worth_to_first_order_is_what_it_costs_to_be_without_it() -> None:
+    system = Detuned(ring(0.0, RATE, 0.0, 0.0))
+    known = {one.name: one for one in system.candidates}
+    start = freed(system, known, beside_damping(system, 3.0), "tone")
+    assert start.state is not None
+    pair = lead_from(system, start, start.state)
+    assert pair.state is not None
+    fewer = lead_from(system, pair, pair.state.without("tone"))
+    assert pair.rises_without("tone") == pytest.approx(cost_of(fewer) - cost_of(pair), abs=3.0)
+    assert pair.rises_without("damping") > 1e3
+    assert replace(pair, information=None).rises_without("tone") == np.inf
