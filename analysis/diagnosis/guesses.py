@@ -17,6 +17,10 @@ from analysis.diagnosis.spelling import odds
 CAMERA = ("camera_exposure", "frames_dropped")
 """What a slow camera may do beside sampling rarely."""
 
+NO_GAP_DEG, HALF = 0.005, 0.5
+"""Angles that differ by no more than this do not differ; and what makes less than this share of a
+difference is not its reason."""
+
 
 def guesses(
     pictures: Pictures, ranked: Sequence[Mapping[str, Any]], out: Sequence[Mapping[str, Any]]
@@ -85,19 +89,11 @@ def in_words(said: Mapping[str, Any]) -> str:
     texts = []
     camera = told.get("camera_rate")
     if camera:
-        share = camera["share"]
-        gap = camera["simulated_deg"] - camera["recorded_deg"]
         texts.append(
             "The paper suspects the camera's rate behind the smaller measured angle. Seen only at "
             f"the camera's frames, the simulated {camera['simulated_deg']:.3f} deg would read "
             f"{camera['at_frames_deg']:.3f} deg, against {camera['recorded_deg']:.3f} deg "
-            "recorded: "
-            + (
-                f"the rate makes {100.0 * share:.0f} % of the difference"
-                + (", so it is not the reason." if share < 0.5 else ".")
-                if abs(gap) > 0.005
-                else "there is no difference to explain."
-            )
+            f"recorded: {_rate(camera)}"
         )
         exposure = camera["log_odds"].get("camera_exposure")
         if exposure is not None and exposure < -log(20.0):
@@ -106,6 +102,19 @@ def in_words(said: Mapping[str, Any]) -> str:
     if content:
         texts.append(_frequency_content(said, content))
     return " ".join(texts)
+
+
+def _rate(camera: Mapping[str, Any]) -> str:
+    """What the camera's rate makes of the difference between simulated and measured angle."""
+    gap, share = camera["simulated_deg"] - camera["recorded_deg"], camera["share"]
+    if abs(gap) <= NO_GAP_DEG:
+        return "there is no difference to explain."
+    if gap < 0.0:
+        return "the measured angle is the larger one, which no rate makes it."
+    if share <= 0.0:
+        return "the rate makes none of the difference, so it is not the reason."
+    ends = ", so it is not the reason." if share < HALF else "."
+    return f"the rate makes {100.0 * share:.0f} % of the difference{ends}"
 
 
 def _frequency_content(said: Mapping[str, Any], content: Mapping[str, Any]) -> str:

@@ -173,7 +173,7 @@ PHRASES: Mapping[str, Callable[[Told], str]] = {
         f"{c.of('harmonic_share')} of its amplitude"
     ),
     "drive_phase": lambda c: (
-        f"the drive is {c.signed('late_s', 'later', 'earlier')} than its log says"
+        f"the drive is {c.signed('late_s', 'later', 'earlier')} than commanded"
     ),
     # cells
     "cell_drift": lambda c: (

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from math import hypot, isfinite
+from math import degrees, hypot, isfinite
 from typing import Any
 
 from analysis.diagnosis.candidates import PAIRS
@@ -238,8 +238,11 @@ def _fit(machine: RecordedMachine, proof: Confirmation | None) -> dict[str, Any]
     noise: dict[str, Any] = {}
     for bundle in machine.bundles:
         for i, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
-            value = float(bundle.covariance[i, i]) ** 0.5
-            noise.setdefault(bundle.record, {})[name] = {"sigma": value, "unit": unit}
+            sigma = float(bundle.covariance[i, i]) ** 0.5
+            angle = name.endswith("_deg")
+            noise.setdefault(bundle.record, {})[name] = {
+                "sigma": degrees(sigma) if angle else sigma, "unit": "deg" if angle else unit,
+            }  # fmt: skip
     if proof is None:
         return {"noise": noise, "before": {}, "after": {}}
     return {

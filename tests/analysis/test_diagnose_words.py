@@ -241,6 +241,24 @@ def test_the_papers_guesses_are_weighed() -> None:
     assert "hysteresis of the cables without friction is 1,100 to 1 behind it" in said
 
 
+@pytest.mark.parametrize(
+    ("simulated_deg", "share", "words"),
+    [
+        (1.923, 0.9, "there is no difference to explain."),
+        (1.90, -2.2, "the measured angle is the larger one, which no rate makes it."),
+        (2.03, -0.4, "the rate makes none of the difference, so it is not the reason."),
+        (2.03, 0.9, "the rate makes 90 % of the difference."),
+    ],
+)
+def test_no_share_of_a_difference_is_told_where_there_is_none(
+    simulated_deg: float, share: float, words: str
+) -> None:
+    said = statement()
+    camera = {**said["paper_guesses"]["camera_rate"], "simulated_deg": simulated_deg}
+    said["paper_guesses"]["camera_rate"] = {**camera, "share": share}
+    assert f"against 1.920 deg recorded: {words}" in guesses(said)
+
+
 def test_what_a_tap_would_have_told_is_said() -> None:
     assert "No run carries a tap." in dict(sections(statement()))["What would change this verdict"]
 
