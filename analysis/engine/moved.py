@@ -115,7 +115,8 @@ def freed(
 def released(refiner: Refiner, base: Fitted, cause: str, *, lead: bool = True) -> Fitted:
     """The hypothesis that a cause's numbers are off, led from where they had moved by themselves.
 
-    Its score is that of what was on before: how likely it is, is told by how far they had moved.
+    Its score is that of what was on before, or, where that is more, by what they cost less: how
+    likely it is, is told by how far they had moved.
 
     Parameters
     ----------
@@ -138,7 +139,11 @@ def released(refiner: Refiner, base: Fitted, cause: str, *, lead: bool = True) -
         )
     assert led.state is not None
     there = as_sure(refiner, refiner.standing(led.state, led.nuisance), led, max(base.left, 1.0))
-    return replace(there, log_score=base.log_score, left=min(led.left, base.left))
+    costs = float(base.point.nuisance @ base.point.nuisance) - led.strain
+    known = refiner.candidates
+    rises = there.hypothesis.log_prior(known) - base.hypothesis.log_prior(known) + 0.5 * costs
+    score = base.log_score + max(rises, 0.0)
+    return replace(there, log_score=score, left=min(led.left, base.left))
 
 
 def released_beside(
