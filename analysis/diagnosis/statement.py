@@ -239,7 +239,7 @@ def _fit(machine: RecordedMachine, proof: Confirmation | None) -> dict[str, Any]
     for bundle in machine.bundles:
         for i, (name, unit) in enumerate(zip(bundle.names, bundle.units, strict=True)):
             sigma = float(bundle.covariance[i, i]) ** 0.5
-            angle = name.endswith("_deg")
+            angle = unit == "rad"
             noise.setdefault(bundle.record, {})[name] = {
                 "sigma": degrees(sigma) if angle else sigma, "unit": "deg" if angle else unit,
             }  # fmt: skip

@@ -85,8 +85,7 @@ def confirm(search: Search, chosen: Fitted) -> Confirmation:
     held = "" if sealed or len(records) < LEAST_RECORDS else _held(search.system, records)
     start = search.calibrated.at
     if search.faint:
-        null = next(one for one in search.fitted if not one.hypothesis.parts)
-        start = null.point.nuisance
+        start = next(one.point.nuisance for one in search.fitted if not one.hypothesis.parts)
     if part is not None:
         system, start = part, part.own(start)
     named = _named(system, chosen)

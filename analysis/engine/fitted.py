@@ -65,6 +65,11 @@ class Fitted:
     left: float = nan
     elsewhere: tuple[Mapping[str, Mapping[str, float]], ...] = ()
 
+    @property
+    def strain(self) -> float:
+        """What parameters cost: how far they are from what is known of them, squared, in sigmas."""
+        return float(self.point.nuisance @ self.point.nuisance)
+
     def as_sure(self, spread: Array) -> "Fitted":
         """With other standard deviations of its free numbers, shape (numbers,)."""
         sigmas, shape_sigmas = sigmas_by_name(self.state, spread)

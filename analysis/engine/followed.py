@@ -133,16 +133,28 @@ class Followed:
         """
         if self.information is None or self.state is None:
             return np.inf
-        count, known = len(self.nuisance), self.information.copy()
-        known[range(count), range(count)] += 1.0
-        _, rows = self.state.shape_rows()
-        known[count:, count:] += rows.T @ rows
+        count, known = len(self.nuisance), self.known(self.information)
         numbers = [self.state.numbers[i] for i in self.state.free]
         own = [k for k in self.state.places(name) if numbers[k].shape is None]
         there = np.array([count + k for k in own], dtype=np.int64)
         covariance = np.linalg.pinv(known, hermitian=True)[np.ix_(there, there)]
         sizes = self.numbers[there]
         return float(sizes @ np.linalg.lstsq(covariance, sizes, rcond=None)[0])
+
+    def known(self, told: Array) -> Array:
+        """What is known of the free numbers, shape (numbers, numbers): an inverse covariance.
+
+        Parameters
+        ----------
+        told
+            What samples tell of them, of that shape; beside it, priors of nuisances and of shapes.
+        """
+        found, count = told.copy(), len(self.nuisance)
+        found[range(count), range(count)] += 1.0
+        if self.state is not None:
+            _, rows = self.state.shape_rows()
+            found[count:, count:] += rows.T @ rows
+        return found
 
     def moved(self, change: Array, share: float) -> "Followed":
         """A share of a step further."""

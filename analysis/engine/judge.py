@@ -199,7 +199,7 @@ def _moved(
         first = max(far, key=lambda i: found[i])
         # What is so small that it is none has no evidence of its own.
         rise = found[first] - (scores[first] if np.isfinite(scores[first]) else nothing)
-        strain = np.array([float(one.point.nuisance @ one.point.nuisance) for one in fitted])
+        strain = np.array([one.strain for one in fitted])
         null = max(strain[i] for i, one in enumerate(names) if not one)
         for i, one in enumerate(names):
             keeps = null - strain[i] >= KEEPS * (null - strain[first])

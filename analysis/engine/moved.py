@@ -139,9 +139,9 @@ def released(refiner: Refiner, base: Fitted, cause: str, *, lead: bool = True) -
         )
     assert led.state is not None
     there = as_sure(refiner, refiner.standing(led.state, led.nuisance), led, max(base.left, 1.0))
-    costs = float(base.point.nuisance @ base.point.nuisance) - led.strain
     known = refiner.candidates
-    rises = there.hypothesis.log_prior(known) - base.hypothesis.log_prior(known) + 0.5 * costs
+    rises = there.hypothesis.log_prior(known) - base.hypothesis.log_prior(known)
+    rises += 0.5 * (base.strain - led.strain)
     score = base.log_score + max(rises, 0.0)
     return replace(there, log_score=score, left=min(led.left, base.left))
 
@@ -156,7 +156,7 @@ def released_beside(
     refiner
         Makes them.
     fitted
-        Hypotheses, the likeliest first.
+        Hypotheses, nothing left out among them.
     noise
         The squared misfit of a sample that noise leaves: what leaves more may be a wrong law, for
         which parameters make up.
@@ -169,14 +169,13 @@ def released_beside(
         Hypotheses that are new, and which of them, old and new, are of that kind.
     """
     nuisances, known = refiner.system.nuisances, refiner.candidates
-    on = [one for one in fitted if one.hypothesis.parts]
+    likeliest = sorted(fitted, key=lambda one: -one.log_score)
+    best = likeliest[0]
+    room = 0 < len(best.hypothesis.parts) < most_causes
+    if not (room and best.left < noise):
+        return [], {}
+    on = [one for one in likeliest if one.hypothesis.parts]
     named = {one.hypothesis.names for one in fitted}
-    nothing = max((one.log_score for one in fitted if one not in on), default=-np.inf)
-    best = max(on, key=lambda one: one.log_score, default=None)
-    if best is None or best.log_score < nothing:
-        return [], {}
-    if not best.left < noise or len(best.hypothesis.parts) >= most_causes:
-        return [], {}
     far = moved_far(nuisances, best.point.nuisance)
     free = far.keys() & known.keys() - set(best.hypothesis.names)
     cause = max(free, key=lambda one: far[one], default="")

@@ -152,13 +152,12 @@ def search(
         found = found._replace(fitted=_as_stated(found.fitted, system.told))
     alone = next((one for one in found.fitted if not one.hypothesis.parts), null)
     moved = _moved(system, alone) if found.faint or not rings(system) else {}
-    released_too, beside = _released(refiner, found.fitted, alone, moved, most_causes)
-    fitted = (*found.fitted, *released_too)
+    more, beside = _released(refiner, found.fitted, alone, moved, most_causes)
+    fitted = (*found.fitted, *more)
     limits = () if found.alone is None else limits_of(found.alone, refiner.candidates)
     return Search(
         system, lens, data, calibrated, tuple(found.screened), null, fitted, refiner,
-        faint=found.faint, aside=found.aside, moved=moved, beside=beside,
-        limits=limits,
+        faint=found.faint, aside=found.aside, moved=moved, beside=beside, limits=limits,
     )  # fmt: skip
 
 

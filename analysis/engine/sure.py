@@ -24,11 +24,7 @@ def as_sure(refiner: Refiner, fitted: Fitted, led: Followed, noise: float) -> Fi
     """
     if led.information is None or led.state is None:
         return fitted
-    known, count = led.information / noise, len(led.nuisance)
-    own = np.arange(len(known)) >= count
-    known[~own, ~own] += 1.0
-    _, rows = led.state.shape_rows()
-    known[np.ix_(own, own)] += rows.T @ rows
+    known, count = led.known(led.information / noise), len(led.nuisance)
     single = {(one.candidate, one.terms) for one in led.state.numbers}
     same = [(one.cause or "", (one.term or "",)) in single for one in refiner.system.nuisances]
     keep = np.concatenate([~np.array(same, dtype=bool), np.ones(len(known) - count, dtype=bool)])

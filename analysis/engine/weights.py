@@ -159,7 +159,7 @@ def _more_left(fitted: Sequence[Fitted], best: Fitted) -> Array:
 
 def _strained(scores: Array, fitted: Sequence[Fitted], temper: float, most: float) -> Array:
     """Scores in which parameters that are bent count for more, where the others count for less."""
-    strain = np.array([0.5 * float(one.point.nuisance @ one.point.nuisance) for one in fitted])
+    strain = np.array([0.5 * one.strain for one in fitted])
     return scores - strain * max(temper / most - 1.0, 0.0)
 
 
