@@ -39,9 +39,9 @@ def residual_map(pictures: Pictures, record: str, look: Look) -> "Figure":
     figure = Figure(figsize=(look.width, height), layout="constrained")
     panels = figure.subplots(rows, 1 if look.narrow else 2, squeeze=False)
     flat = panels.ravel()
-    lines = [np.stack([getattr(c, f"harmonics_{stage}") for c in channels]) for stage, _ in stages]
+    lines = [by_harmonic(channels, stage) for stage, _ in stages]
     cycles = [by_phase(pictures, record, stage) for stage, _ in stages]
-    top = max(float(lines[0].max()), 10.0)
+    top = max(float(np.nanmax(lines[0])), 10.0)
     most = max(float(np.abs(cycles[0]).max()), 10.0)
     # A phone shows all harmonics and then all phases, a page both side by side.
     half = len(stages)
@@ -71,6 +71,25 @@ def residual_map(pictures: Pictures, record: str, look: Look) -> "Figure":
     bar.set_ticks(both, labels=[f"{one:g}" for one in both])
     bar.set_label("recorded - simulated, times the noise")
     return figure
+
+
+def by_harmonic(channels: tuple[Channel, ...], stage: str) -> Array:
+    """Residual at each harmonic in units of its noise, shape (channels, harmonics).
+
+    What is sampled too slowly for a harmonic, or over too short a stretch, has none: not a number.
+
+    Parameters
+    ----------
+    channels
+        Of one run, one of them with harmonics.
+    stage
+        "before" or "after".
+    """
+    rows = [getattr(one, f"harmonics_{stage}") for one in channels]
+    lines = np.full((len(rows), max(row.size for row in rows)), np.nan)
+    for line, row in zip(lines, rows, strict=True):
+        line[: row.size] = row
+    return lines
 
 
 def by_phase(pictures: Pictures, record: str, stage: str) -> Array:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analysis.diagnosis.figure_maps import TICKS, paint
+from analysis.diagnosis.figure_maps import TICKS, by_harmonic, paint
 from analysis.diagnosis.figure_style import Look, key, shown
 from analysis.diagnosis.pictures import Array, Channel, Pictures, Record
 from analysis.diagnosis.spelling import listed
@@ -153,8 +153,8 @@ def _residual(axes: "Axes", one: Channel, run: Record, stages: list[str], look: 
 def _where(figure: "Figure", axes: "Axes", channels: tuple[Channel, ...]) -> None:
     from matplotlib.colors import LogNorm
 
-    lines = np.stack([one.harmonics_before for one in channels])
-    top = max(float(lines.max()), 10.0)
+    lines = by_harmonic(channels, "before")
+    top = max(float(np.nanmax(lines)), 10.0)
     image = paint(axes, lines, channels, "magma_r", LogNorm(1.0, top))
     axes.set_xticks(range(lines.shape[1]))
     axes.set_xlabel("harmonic of the drive (0: mean)")

@@ -112,7 +112,7 @@ POLICIES: dict[str, Policy] = {
             "grip_s": (2e-3,),
             "front_share": (0.0, 0.2),
             "bearing_per_s": (0.0, 50.0),
-            "let_go_share": (1.0,),
+            "let_go_share": (1.0, 0.0),
         },
         form_share=LINEAR,
     ),

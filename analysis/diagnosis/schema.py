@@ -60,6 +60,10 @@ class Remains(Open):
     foretold_until_s: float | None = Field(
         default=None, description="what was recorded later was not counted: nothing foretells it"
     )
+    begins_s: float | None = Field(
+        default=None, description="when something begins at once that nothing explains"
+    )
+    begins_in: str | None = Field(default=None, description="the channel where it is loudest")
 
 
 class Parts(Open):

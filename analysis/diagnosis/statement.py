@@ -64,7 +64,7 @@ def statement(machine: RecordedMachine, diagnosis: Diagnosis) -> dict[str, Any]:
             "misfit": None if remains is None else remains.misfit,
             "not_followed": [] if diagnosis.search is None else list(diagnosis.search.aside),
             "shown": diagnosis.judgement is not None and diagnosis.judgement.shown,
-            "foretold_until_s": _foretold_until_s(diagnosis),
+            **_foretold(diagnosis),
         },
         "fit": _fit(machine, diagnosis.confirmation),
         "located": [_finding(one) for one in diagnosis.findings],
@@ -98,10 +98,15 @@ def not_ruled_out(
             if share > NOT_RULED_OUT]  # fmt: skip
 
 
-def _foretold_until_s(diagnosis: Diagnosis) -> float | None:
-    """Up to when the recording counts, in s; None: all of it does."""
-    cut = (one for one in restatements(diagnosis.system) if isinstance(one, Until))
-    return next((one.end_s for one in cut), None)
+def _foretold(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Up to when the recording counts, in s, and what begins at once later; null: no end."""
+    cut = next((one for one in restatements(diagnosis.system) if isinstance(one, Until)), None)
+    at_once = None if cut is None else cut.begins
+    return {
+        "foretold_until_s": None if cut is None else cut.end_s,
+        "begins_s": None if at_once is None else at_once.t_s,
+        "begins_in": None if at_once is None else at_once.channel,
+    }
 
 
 def _limits(diagnosis: Diagnosis) -> list[dict[str, Any]]:

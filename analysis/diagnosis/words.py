@@ -18,6 +18,9 @@ from analysis.diagnosis.titles import parameter_name, short
 RULED_OUT = 3.0
 """Logarithm of odds, 20 to 1."""
 
+FALLS = 0.99
+"""An error that comes to less than this share of what it was has fallen."""
+
 TOLD_RIVALS = 4
 """Rivals that are named in a sentence."""
 
@@ -118,8 +121,14 @@ def _explained(said: Statement, names: str) -> str:
 
 
 def _unexplained(said: Statement) -> str:
-    causes = said["causes"]
-    if not causes and not said["remains"]["significant"]:
+    causes, remains = said["causes"], said["remains"]
+    if not causes and (at_s := remains.get("begins_s")) is not None:
+        return (
+            f"Nothing was left out up to {at_s:.1f} s; then something begins at once, loudest in "
+            f"{remains['begins_in']}, that nothing in the library of effects explains: a clamp or "
+            "an anchor that slipped, a blow, or a sensor that jumped."
+        )
+    if not causes and not remains["significant"]:
         return (
             "In steady motion the simulation agrees with the recording, but no parameters within "
             "what is known of them follow how the platform rings, and nothing in the library of "
@@ -241,7 +250,7 @@ def _falls(said: Statement) -> bool:
     before, after = said["fit"].get("before", {}), said["fit"].get("after", {})
     part = _part(said)
     kinds = before.get(part, {}).keys() & after.get(part, {}).keys()
-    return not kinds or any(after[part][one] < before[part][one] for one in kinds)
+    return not kinds or any(after[part][one] < FALLS * before[part][one] for one in kinds)
 
 
 def _far_from_noise(said: Statement) -> bool:
@@ -255,6 +264,8 @@ def _remains(said: Statement) -> list[str]:
     told = []
     if (until_s := remains.get("foretold_until_s")) is not None:
         told = [f"What was recorded after {until_s:.1f} s, nothing foretells: it did not count."]
+    if (at_s := remains.get("begins_s")) is not None and said["causes"]:
+        told.append(f"At {at_s:.1f} s something begins at once that nothing explains.")
     if aside := remains.get("not_followed"):
         told += [
             f"With this, {listed(aside)} could not be followed to the end and did not count: there "
@@ -274,7 +285,7 @@ def ruled_out(said: Statement) -> str:
     fitted = [one for one in out if one["how"] != "screened" and -one["log_odds"] > RULED_OUT]
     texts = []
     null = next((-one["log_odds"] for one in said.get("ranking", []) if not one["effects"]), None)
-    if said["causes"] and null is not None:
+    if said["causes"] and null is not None and null > RULED_OUT:
         texts.append(f"That nothing was left out is ruled out, {odds(null)}.")
     instead = [one for one in fitted if one["how"] == "instead"]
     if instead:

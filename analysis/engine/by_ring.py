@@ -8,6 +8,7 @@ import numpy as np
 from analysis.engine.all_samples import cost_of
 from analysis.engine.array import Array
 from analysis.engine.beginnings import begun_otherwise
+from analysis.engine.begins import begins
 from analysis.engine.cycles import valley
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import guessed, one_more
@@ -110,7 +111,10 @@ def by_ring(
         fitted = (rung or ()) if told is None else told.beside(rung)
         return Found(screened, fitted, faint=True, alone=about if near else None)
     foretold = 1.0 if led.arrived else _foretold(nothing)
-    return Found((), (), faint=False, led=Led(led, single), foretold=foretold)
+    at_once = None if foretold == 1.0 else begins(system, nothing.point, foretold)
+    return Found(
+        (), (), faint=False, led=Led(led, single), foretold=foretold, begins=at_once
+    )  # fmt: skip
 
 
 def _promised(

@@ -275,11 +275,18 @@ class FollowedSearch(ToldLeader):
             Those to try.
         """
         for number, one in enumerate(self._fresh(hypotheses)):
-            if number > 0 and (self._effort > self._most or self._is_kin(one)):
+            spent = self._effort > self._most
+            if number > 0 and (spent or self._is_kin(one) or self._leads_in_a_form(one)):
                 continue
             self._lead_guess(one)
             self._lead_otherwise(one)
         self._is_enough()
+
+    def _leads_in_a_form(self, guess: Guess) -> bool:
+        """Whether the same in the same places leads farther than parameters, as it was begun."""
+        state = self._best.state
+        same = state is not None and state.hypothesis.key == guess.hypothesis.key
+        return same and not self._near and self._is_farther(self._best)
 
     def _lead_guess(self, guess: Guess) -> None:
         """Lead what straight lines promise, or, near the phase, so much of it as leaves least."""

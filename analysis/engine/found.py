@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from analysis.engine.array import Array
+from analysis.engine.begins import Begins
 from analysis.engine.faint import Faint
 from analysis.engine.fitted import Fitted
 from analysis.engine.followed import Followed, Lent
@@ -17,10 +18,10 @@ class Found(NamedTuple):
     """Single causes to first order, hypotheses, whether by the ring, and what was led so far.
 
     Of several recordings, those that stand aside: hypotheses do not count what is there. Up to
-    which share of the time anything can be foretold, and a cause that foretells some of it. The
-    system with the noise that its samples have, or with loosely known parameters as well known as
-    the recording tells, where that is not as stated, and from where to begin again with it. Where
-    parameters alone came to the noise, everything about there.
+    which share of the time anything can be foretold, what begins at once after that, and a cause
+    that foretells some of it. The system with the noise that its samples have, or with loosely
+    known parameters as well known as the recording tells, where that is not as stated, and from
+    where to begin again with it. Where parameters alone came to the noise, everything about there.
     """
 
     screened: Sequence[Scored]
@@ -29,6 +30,7 @@ class Found(NamedTuple):
     led: "Led | None" = None
     aside: tuple[str, ...] = ()
     foretold: float = 1.0
+    begins: Begins | None = None
     foretells: Followed | None = None
     again: "tuple[System, Start] | None" = None
     alone: Faint | None = None

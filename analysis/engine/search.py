@@ -132,7 +132,8 @@ def search(
         other, start = found.again
         return search(other, tell, anew=anew, most_causes=most_causes, start=start)
     if not found.fitted and found.foretold < 1.0 and not isinstance(system, Until):
-        return search(Until(system, found.foretold), tell, anew=anew, most_causes=most_causes)
+        cut = Until(system, found.foretold, found.begins)
+        return search(cut, tell, anew=anew, most_causes=most_causes)
     if not found.fitted:
         found = by_lines(refiner, null, most_causes, tell, found.led)
     if found.foretells is not None and not isinstance(system, Until):

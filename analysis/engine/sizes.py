@@ -32,6 +32,10 @@ SIZES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 BEYOND = 2
 """Windows beyond where parameters alone lead: in the first there may be hardly any motion."""
 
+FORMS, NEARLY = 5, 0.95
+"""The likeliest cause is tried in so many forms, where each says this share of what the best does:
+a step from the wrong one may lead nowhere, and which is wrong so short a stretch does not tell."""
+
 LONGEST = 0.3
 """Of the time: what parameters can make up for over longer than that is little, and straight lines
 tell it; so much more would have to be simulated."""
@@ -77,15 +81,37 @@ def in_any_size(
         left = samples.residuals(points, share)
         return [0.5 * (alone - made_up.cost(one)) for one in left]
 
-    found = []
+    found, forms = [], dict[str, list[Guess]]()
     for candidate in candidates.values():
         states = list(_in_sizes(candidate, candidates))
         if states:
-            rise, first = max(zip(rises(states), range(len(states)), strict=True))
-            found.append(Guess(states[first], base.nuisance, rise))
+            told_of = zip(states, rises(states), strict=True)
+            sized = [Guess(one, base.nuisance, rise) for one, rise in told_of]
+            forms[candidate.name] = _of_each_form(sized)
+            found.append(forms[candidate.name][0])
     again = rises([one.state for one in told])
     found += [replace(one, log_score=rise) for one, rise in zip(told, again, strict=True)]
-    return sorted(found, key=lambda one: -one.log_score)
+    found.sort(key=lambda one: -one.log_score)
+    return [*found[:1], *_as_likely(forms, found[0]), *found[1:]] if found else found
+
+
+def _of_each_form(sized: Sequence[Guess]) -> list[Guess]:
+    """The likeliest size of each form, the likeliest first."""
+    best: dict[object, Guess] = {}
+    for one in sorted(sized, key=lambda one: -one.log_score):
+        shapes = (tuple(sorted(part.shapes.items())) for part in one.hypothesis.parts.values())
+        best.setdefault((one.hypothesis.key, *shapes), one)
+    return list(best.values())
+
+
+def _as_likely(forms: Mapping[str, Sequence[Guess]], first: Guess) -> list[Guess]:
+    """The first in other forms that say nearly as much, all places alike."""
+    (name,) = first.hypothesis.names
+    return [
+        one
+        for one in forms.get(name, ())[:FORMS]
+        if one is not first and one.log_score > NEARLY * first.log_score
+    ]
 
 
 class _MadeUp:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from analysis.engine.begins import Begins
 from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.restated import Restated
 from analysis.engine.system import Point, System
@@ -12,6 +13,12 @@ FORETOLD = (
     "after that not by anything that was tried. A motion that grows of itself, as in a parametric "
     "resonance, does that, cables that stick and slip or go slack do, and so does something that "
     "only begins then; another frequency of the drive tells which"
+)
+
+AT_ONCE = (
+    "at {at_s:.1f} s something begins at once, loudest in {channel!r}, that nothing tried "
+    "explains: what was recorded after {until_s:.1f} s does not count. What slips, a blow, or a "
+    "sensor that jumps does that"
 )
 
 
@@ -24,11 +31,14 @@ class Until(Restated):
         All of it.
     share
         Of the time of each bundle, above 0.
+    begins
+        What begins at once after that: it was left out, whatever it is.
     """
 
-    def __init__(self, stated: System, share: float) -> None:
+    def __init__(self, stated: System, share: float, begins: Begins | None = None) -> None:
         super().__init__(stated)
         self.share = share
+        self.begins = begins
         self.bundles = tuple(_cut(one, share) for one in stated.bundles)
 
     @property
@@ -39,7 +49,10 @@ class Until(Restated):
     @property
     def note(self) -> str:
         """See `Restated`."""
-        return FORETOLD.format(until_s=self.end_s)
+        if self.begins is None:
+            return FORETOLD.format(until_s=self.end_s)
+        at_s, channel = self.begins
+        return AT_ONCE.format(at_s=at_s, channel=channel, until_s=self.end_s)
 
     def as_stated(self, point: Point) -> Point:
         """See `Restated`."""
