@@ -33,8 +33,8 @@ BEYOND = 2
 """Windows beyond where parameters alone lead: in the first there may be hardly any motion."""
 
 FORMS, NEARLY = 5, 0.95
-"""The likeliest cause is tried in so many forms, where each says this share of what the best does:
-a step from the wrong one may lead nowhere, and which is wrong so short a stretch does not tell."""
+"""The likeliest cause is kept in so many forms, where each says this share of what the best does:
+a step from a wrong one may lead nowhere, and which is wrong so short a stretch does not tell."""
 
 LONGEST = 0.3
 """Of the time: what parameters can make up for over longer than that is little, and straight lines
@@ -63,8 +63,9 @@ def in_any_size(
     Returns
     -------
     list of Guess
-        What was told, and each cause in its likeliest size and form, with the rise of the score
-        over that stretch; as it was told, where the motion is not lost as it begins.
+        What was told, and each cause in its likeliest size and form, the likeliest in others too,
+        with the rise of the score over that stretch; as it was told, where the motion is not lost
+        as it begins.
     """
     at = nothing.about or nothing
     share = [one for one in WINDOWS if one > min(at.telling, WINDOWS[-2])][:BEYOND][-1]
@@ -91,8 +92,10 @@ def in_any_size(
             found.append(forms[candidate.name][0])
     again = rises([one.state for one in told])
     found += [replace(one, log_score=rise) for one, rise in zip(told, again, strict=True)]
-    found.sort(key=lambda one: -one.log_score)
-    return [*found[:1], *_as_likely(forms, found[0]), *found[1:]] if found else found
+    if found:
+        first = max(found, key=lambda one: one.log_score)
+        found += _as_likely(forms, first)
+    return sorted(found, key=lambda one: -one.log_score)
 
 
 def _of_each_form(sized: Sequence[Guess]) -> list[Guess]:
@@ -105,13 +108,10 @@ def _of_each_form(sized: Sequence[Guess]) -> list[Guess]:
 
 
 def _as_likely(forms: Mapping[str, Sequence[Guess]], first: Guess) -> list[Guess]:
-    """The first in other forms that say nearly as much, all places alike."""
+    """The first in other forms than its likeliest that say nearly as much, all places alike."""
     (name,) = first.hypothesis.names
-    return [
-        one
-        for one in forms.get(name, ())[:FORMS]
-        if one is not first and one.log_score > NEARLY * first.log_score
-    ]
+    others = forms.get(name, ())[1:FORMS]
+    return [one for one in others if one.log_score > NEARLY * first.log_score]
 
 
 class _MadeUp:

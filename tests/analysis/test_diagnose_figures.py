@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from diagnosis_stand_ins import FRICTION_N, NOISE_N, pictures, result, statement
 
-from analysis.diagnosis.figure_maps import PHASES, by_phase
+from analysis.diagnosis.figure_maps import PHASES, by_harmonic, by_phase
 from analysis.diagnosis.figure_states import force_map
 from analysis.diagnosis.figure_story import improved, mean_cycle, shown_channel
 from analysis.diagnosis.figure_style import DARK, LIGHT, Look, most_off
@@ -34,6 +34,19 @@ def test_each_is_drawn_in_its_colours_and_width(name: str, look: Look) -> None:
     paper = [int(look.paper[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
     assert np.allclose(image[-1, -1, :3], paper, atol=0.01)
     assert (np.abs(image[..., :3] - paper).max(axis=-1) > 0.1).mean() > 0.005
+
+
+@pytest.mark.parametrize("name", ["story", "map"])
+def test_a_channel_with_fewer_harmonics_has_blanks(name: str) -> None:
+    whole = pictures()
+    first, *others = whole.channels
+    fewer = replace(first, harmonics_before=first.harmonics_before[:3], harmonics_after=np.zeros(0))
+    lines = by_harmonic((fewer, *others), "before")
+    assert np.array_equal(lines[0, :3], first.harmonics_before[:3])
+    assert np.isnan(lines[0, 3:]).all()
+    assert np.isfinite(lines[1:]).all()
+    drawing = dict(drawings(statement(), replace(whole, channels=(fewer, *others))))[name]
+    assert drawn(drawing, LIGHT)["png"]
 
 
 def test_nothing_named_has_nothing_after() -> None:

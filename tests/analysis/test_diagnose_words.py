@@ -178,6 +178,37 @@ def test_what_nothing_foretells_is_told_to_have_not_counted() -> None:
     Statement.model_validate(said)
 
 
+def test_what_begins_at_once_is_told_with_when_and_where() -> None:
+    said = statement("unexplained", [])
+    late = {"foretold_until_s": 4.5, "begins_s": 5.17, "begins_in": "tension 4"}
+    said["remains"] = {**said["remains"], **late}
+    assert headline(said).startswith(
+        "Nothing was left out up to 5.2 s; then something begins at once, loudest in tension 4"
+    )
+    Statement.model_validate(said)
+    beside = statement()
+    beside["remains"] = {**beside["remains"], **late}
+    assert "At 5.2 s something begins at once that nothing explains." in paragraph(beside)
+
+
+def test_nothing_is_not_ruled_out_where_it_is_about_as_likely() -> None:
+    said = statement()
+    assert "That nothing was left out is ruled out" in ruled_out(said)
+    ranking = [
+        {**one, "log_odds": one["log_odds"] if one["effects"] else -0.3} for one in said["ranking"]
+    ]
+    assert "That nothing was left out" not in ruled_out({**said, "ranking": ranking})
+
+
+def test_an_error_that_stays_what_it_was_does_not_fall() -> None:
+    fit = statement()["fit"]
+    fit["after"] = {
+        part: {kind: 0.998 * value for kind, value in kinds.items()}
+        for part, kinds in fit["before"].items()
+    }
+    assert "falls" not in paragraph(statement(fit=fit))
+
+
 def test_a_fit_far_from_the_noise_is_not_told_as_if_it_were_good() -> None:
     fit = statement()["fit"]
     fit["after"] = {"used": {"tension": 14.0}, "held_out": {"tension": 15.0}}
