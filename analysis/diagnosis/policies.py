@@ -105,7 +105,12 @@ POLICIES: dict[str, Policy] = {
     ),
     # Where it is tied on is told once it is there.
     "umbilical": Policy(
-        shapes={"loss_s": (5e-3,), "at_x_m": (0.0,), "at_y_m": (0.0,), "at_z_m": (0.0,)}
+        shapes={
+            "loss_s": (5e-3,),
+            "at_x_m": (0.0, 0.1, -0.1),
+            "at_y_m": (0.0,),
+            "at_z_m": (0.0, 0.1, -0.1),
+        }
     ),
     "pulley_inertia": Policy(
         shapes={
