@@ -133,9 +133,7 @@ class Way:
             self.in_phase(passed, AT_ONCE),
             next(one for one in WINDOWS if one > passed),
         )
-        # A law that is not exact leaves of a longer stretch what it leaves of a shorter one.
-        reach = self.in_phase(passed, REACH)
-        if self.left(share) < reach:
+        if self.left(share) < REACH:
             whole = self.here
             if self._seen < 1.0:
                 (whole,) = self._samples.residuals([self.at.point])
@@ -144,7 +142,7 @@ class Way:
             whole[self._samples.shares > share] = 0.0
             self.here = whole
             self._see(share)
-        while share - passed > NARROWEST and self.left(share) > reach:
+        while share - passed > NARROWEST and self.left(share) > REACH:
             share = 0.5 * (passed + share)
         return share
 
