@@ -153,6 +153,14 @@ def _check(judgement: Judgement) -> dict[str, Any]:
     if judgement.verdict == "parameter":
         what = f"measure what {names[0]} stands for by itself, and correct the rig file"
         minutes = 30.0
+    elif not names:
+        # Nothing was named: there is no rig file with it in to compare with.
+        what = (
+            "record the same motion at half the amplitude and at another frequency: whether what "
+            "is missed halves too, and whether it moves with the drive, tells friction, a number "
+            "that is off and a ring apart"
+        )
+        minutes = 2.0
     else:
         what = (
             "record the same motion at half the amplitude and at another frequency, and compare it "

@@ -1,5 +1,6 @@
 """The next experiment: proposed where rivals remain, recordable, and telling them apart."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -164,6 +165,19 @@ def test_where_no_motion_tells_a_measurement_is_named(
     assert said is not None
     assert said["excitation"] is None
     assert "no motion in the list tells" in said["what"]
+
+
+def test_a_named_cause_is_checked_by_its_rig_file_and_nothing_named_by_none(
+    undecided: tuple[RecordedMachine, Diagnosis],
+) -> None:
+    machine, diagnosis = undecided
+    assert diagnosis.judgement is not None
+    near = replace(diagnosis.judgement, verdict="unexplained")
+    for judgement, wanted in ((near, True), (replace(near, causes=()), False)):
+        said = next_experiment(machine, replace(diagnosis, judgement=judgement), None)
+        assert said is not None
+        assert "half the amplitude" in said["what"]
+        assert ("improved.toml" in said["what"]) is wanted
 
 
 @pytest.mark.parametrize(
