@@ -1,7 +1,6 @@
 """The improved rig file: the causes switched on, the parameters where the fit has them."""
 
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +105,7 @@ def _move(
     rig = machine.recordings[0].rig
     chosen = diagnosis.judgement.chosen
     at = diagnosis.calibrated.rotation @ chosen.weighed.nuisance
-    trim_n = _trim_n(machine, Point(at, chosen.point.effects))
+    trim_n = machine.trim.moved_n(Point(at, chosen.point.effects), 0)
     for sigmas, nuisance, meaning in zip(at, machine.nuisances, machine.meanings, strict=True):
         amount = float(sigmas * nuisance.sigma)
         if meaning.record > 0:
@@ -127,18 +126,6 @@ def _move(
             _set(data["platform"], "mass_kg", mass.value * (1.0 + amount), mass.sigma)
         elif meaning.effect == "drive_amplitude":
             _drive(data, diagnosis, meaning, amount)
-
-
-def _trim_n(machine: RecordedMachine, point: Point) -> Array:
-    """By how much cables are tighter since whoever tightened them trimmed the platform, (8,)."""
-    trims = [i for i, one in enumerate(machine.meanings) if one.parameter == "trimmed_share"]
-    without = point.nuisance.copy()
-    without[trims] = 0.0
-    if not (point.nuisance - without).any():
-        return np.zeros(CABLES)
-    both = (point, replace(point, nuisance=without))
-    trimmed, hanging = (machine.job(one, 0).task.machine.pretension for one in both)
-    return np.asarray(trimmed - hanging)
 
 
 def _add(data: dict[str, Any], meaning: Meaning, amount: float) -> None:

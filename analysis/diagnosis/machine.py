@@ -19,6 +19,7 @@ from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.diagnosis.sighting import sighting_of
+from analysis.diagnosis.trim import Trim
 from analysis.engine.bundle import Bundle
 from analysis.engine.candidate import Candidate
 from analysis.engine.system import Nuisance, Point, Prediction
@@ -193,6 +194,19 @@ class RecordedMachine:
         names = [one.run.name for one in self.recordings]
         record = names.index(asked[0]) if asked else 0
         return tones_hz(self.job(point, record).task.machine)
+
+    def bend(self, here: Point, there: Point) -> Array:
+        """See `Bent`."""
+        return self.trim.bend(here, there)
+
+    @property
+    def trim(self) -> Trim:
+        """What a trim of the platform does."""
+        return Trim(self._meanings, self._known, self._pretension_n)
+
+    def _pretension_n(self, point: Point, record: int) -> Array:
+        """What cables are tightened to in a run, shape (8,), N."""
+        return np.asarray(self.job(point, record).task.machine.pretension)
 
     def _shares(self, points: Sequence[Point], record: int) -> list[Share]:
         """One run of all points, in shares that are simulated side by side."""

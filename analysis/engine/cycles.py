@@ -16,7 +16,7 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.differences import differences
-from analysis.engine.followed import Followed
+from analysis.engine.followed import Followed, straight_on
 from analysis.engine.in_tune import in_tune, longest_s, tones_by_number
 from analysis.engine.known import Known
 from analysis.engine.ring_fit import follow_ring
@@ -170,7 +170,7 @@ def _turns(system: System, led: Followed, known: Known, information: Array) -> l
         tone = _Tone(moves, float(moves @ along))
         if 0.0 < tone.variance < NARROW_RAD**2:
             for turn_rad in (sign * one for one in TURNS_RAD for sign in (1.0, -1.0)):
-                there = led.moved(turn_rad / tone.variance * along, 1.0)
+                there = straight_on(system, led, turn_rad / tone.variance * along)
                 single = turn_rad**2 / tone.variance
                 if known.cost(there.numbers) - known.cost(led.numbers) < max(OPEN, FLAT * single):
                     found.append((there, tone, single))

@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.state import State
-from analysis.engine.system import Point
+from analysis.engine.system import Point, System, bend_of
 
 STEP, FINE = 5e-4, 0.025
 """Of the difference that tells what a parameter does, in sigmas, and of what is on, as a share of
@@ -177,3 +177,9 @@ class Followed:
                 points.append(replace(self, state=self.state.bumped(k, FINE)).point)
                 steps.append(self.state.signed_step(k, FINE))
         return points, np.array(steps)
+
+
+def straight_on(system: System, here: Followed, change: Array) -> Followed:
+    """A step further, where what is simulated is as straight lines have it (`Bent`)."""
+    there = here.moved(change, 1.0)
+    return replace(there, nuisance=there.nuisance + bend_of(system, here.point, there.point))

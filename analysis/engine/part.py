@@ -9,7 +9,7 @@ import numpy as np
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
 from analysis.engine.candidate import Candidate
-from analysis.engine.system import Nuisance, Point, Prediction, System, tones_of
+from analysis.engine.system import Nuisance, Point, Prediction, System, bend_of, tones_of
 
 SEVERAL = 3
 """So many recordings and more are led one after the other: all at once takes too long."""
@@ -74,6 +74,10 @@ class Part:
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
         return tones_of(self._system, self._of_whole(point))
+
+    def bend(self, here: Point, there: Point) -> Array:
+        """See `Bent`."""
+        return self.own(bend_of(self._system, self._of_whole(here), self._of_whole(there)))
 
     def _of_whole(self, point: Point) -> Point:
         """The same for the whole system, of this part's recordings."""

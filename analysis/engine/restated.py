@@ -7,7 +7,7 @@ from typing import Any
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
 from analysis.engine.candidate import Candidate
-from analysis.engine.system import Nuisance, Point, Prediction, System, tones_of
+from analysis.engine.system import Nuisance, Point, Prediction, System, bend_of, tones_of
 
 
 class Restated(ABC):
@@ -42,6 +42,10 @@ class Restated(ABC):
     def tones_hz(self, point: Point) -> Array:
         """See `Ringing`."""
         return tones_of(self.stated, self.as_stated(point))
+
+    def bend(self, here: Point, there: Point) -> Array:
+        """See `Bent`."""
+        return bend_of(self.stated, self.as_stated(here), self.as_stated(there))
 
 
 def restatements(system: System) -> Iterator[Restated]:

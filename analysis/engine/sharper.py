@@ -83,6 +83,10 @@ class Sharper(Restated):
         """See `Restated`."""
         return replace(point, nuisance=self.scales * point.nuisance)
 
+    def bend(self, here: Point, there: Point) -> Array:
+        """See `Bent`."""
+        return super().bend(here, there) / self.scales
+
 
 def scales_of(system: System, share: float) -> Array:
     """The share for each parameter that is known loosely, 1 for the others, shape (p,)."""

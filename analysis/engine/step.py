@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.array import Array
-from analysis.engine.followed import FINE, Followed
+from analysis.engine.followed import FINE, Followed, straight_on
 from analysis.engine.known import LOOSE, Known
 from analysis.engine.ring_samples import Samples
 from analysis.engine.solve import bounded
@@ -32,9 +32,10 @@ MORE, LONGER, LONGEST = 1.25, 2.0, 4.0
 
 
 class Step(NamedTuple):
-    """Where a step leads, what is left there, and by how much the cost falls."""
+    """Where a step leads, by which change, what is left there, and by how much the cost falls."""
 
     there: Followed
+    change: Array
     residual: Array
     fell: float
 
@@ -167,10 +168,10 @@ class Stepper:
     def _along(self, changes: Sequence[Array]) -> list[Step]:
         """What steps come to."""
         found = []
-        ends = [self._at.moved(change, 1.0) for change in changes]
+        ends = [straight_on(self._samples.system, self._at, change) for change in changes]
         residuals = self._samples.residuals([one.point for one in ends], self._seen)
-        for there, residual in zip(ends, residuals, strict=True):
+        for there, change, residual in zip(ends, changes, residuals, strict=True):
             left = residual[self._inside]
             now = float(left @ left) + self._known.cost(there.numbers)
-            found.append(Step(there, residual, self.before - now))
+            found.append(Step(there, change, residual, self.before - now))
         return found

@@ -116,6 +116,31 @@ class Ringing(Protocol):
         ...
 
 
+@runtime_checkable
+class Bent(Protocol):
+    """A system that knows where two of its nuisances, moved together, do what neither does."""
+
+    def bend(self, here: Point, there: Point) -> Array:
+        """What brings `there` to where straight lines about `here` have it.
+
+        A product of two nuisances, of which a third makes up for much more than it is known to,
+        bends every line along which the two move: steps by straight lines lead nowhere then.
+
+        Returns
+        -------
+        Array
+            By how much nuisances of `there` are to move, in sigmas, shape (p,).
+        """
+        ...
+
+
+def bend_of(system: System, here: Point, there: Point) -> Array:
+    """The same of any system: nothing, where it does not say."""
+    if isinstance(system, Bent):
+        return system.bend(here, there)
+    return np.zeros(len(there.nuisance))
+
+
 def tones_of(system: System, point: Point) -> Array:
     """Tones of a system, whether or not it says them, as `Ringing.tones_hz` has them."""
     return system.tones_hz(point) if isinstance(system, Ringing) else np.zeros(0)

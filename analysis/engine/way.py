@@ -14,7 +14,7 @@ from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
 from analysis.engine.part import has_several
 from analysis.engine.ring_samples import Samples
-from analysis.engine.step import Stepper
+from analysis.engine.step import Step, Stepper
 
 WINDOWS = (0.08, 0.12, 0.18, 0.27, 0.45, 0.7, 1.0)
 """Shares of the time over which the ring is followed, one after the other."""
@@ -279,7 +279,7 @@ class Way:
         if found.fell <= 0.0:
             self._serves = False
             return 0.0
-        self._learn(found.there, found.residual)
+        self._learn(found)
         self._won += found.fell
         if not STRAIGHT * promised < found.fell < promised / STRAIGHT:
             self._keep(found.fell)
@@ -298,14 +298,16 @@ class Way:
             self._kept = nuisances
         self._renewed += 1
 
-    def _learn(self, there: Followed, found: Array) -> None:
+    def _learn(self, found: Step) -> None:
         """Go there, and let what was found correct the differences (Broyden 1965)."""
         assert self._columns is not None
-        moved = there.numbers - self.at.numbers
-        missed = self.here - found - moved @ self._columns
+        # By straight lines: what brings it onto them moves nothing more.
+        moved, count = found.there.numbers - self.at.numbers, len(self.at.nuisance)
+        moved[:count] = found.change[:count]
+        missed = self.here - found.residual - moved @ self._columns
         scaled = moved / self._steps
         self._columns += np.outer(scaled / self._steps, missed) / float(scaled @ scaled)
-        self.at, self.here, self._fresh = there, found, False
+        self.at, self.here, self._fresh = found.there, found.residual, False
 
     def arrived(self) -> Followed:
         """Where one is, with what numbers do to all samples about there, as far as is known."""

@@ -11,6 +11,7 @@ from analysis.diagnosis.candidates import SATURATION_STEP_N
 from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import seen_by
+from analysis.engine.array import Array
 from analysis.engine.system import Point, Ringing
 from analysis.engine.until import Until
 from cdpr8.rigfile import Excitation
@@ -120,6 +121,30 @@ def test_the_machine_says_how_stiffness_moves_its_tones(recorded: Recording) -> 
     share = machine.tones_hz(Point(nuisance)) / nominal - 1.0
     assert np.all((share > 0.0) & (share < 0.5 * np.mean(sigmas)))
     assert share[1:] == pytest.approx(0.5 * np.mean(sigmas), rel=0.2)
+
+
+def test_a_trim_of_what_is_off_bends_nothing(recorded: Recording) -> None:
+    """Cables are as tight as where the trim, and anchors and mass, had moved one by one."""
+    machine = RecordedMachine([recorded], NAMES, workers=1)
+    rng, here = np.random.default_rng(1), np.zeros(len(machine.nuisances))
+    kinds = [one.effect for one in machine.meanings]
+    moved = [i for i, kind in enumerate(kinds) if kind in ("geometry", "mass", "pretension")]
+    here[moved] = rng.standard_normal(len(moved))
+    (trim,) = [i for i, one in enumerate(machine.meanings) if one.parameter == "trimmed_share"]
+    change = np.zeros(len(here))
+    change[moved] = 0.5 * rng.standard_normal(len(moved))
+    here[trim], change[trim] = 0.3, 0.5
+    only_trim = np.where(np.arange(len(here)) == trim, change, 0.0)
+    there = here + change
+
+    def tight_n(nuisance: Array) -> Array:
+        return machine.job(Point(nuisance), 0).task.machine.pretension
+
+    parts = tight_n(here + only_trim) + tight_n(here + change - only_trim) - 2.0 * tight_n(here)
+    straight = there + machine.bend(Point(here), Point(there))
+    assert np.abs(tight_n(there) - tight_n(here) - parts).max() > 0.05
+    assert tight_n(straight) - tight_n(here) == pytest.approx(parts, abs=1e-9)
+    assert machine.bend(Point(here), Point(here + change - only_trim)) == pytest.approx(0.0)
 
 
 def test_however_high_a_machine_rings_that_is_let_go_its_rows_are_close_enough(
