@@ -127,8 +127,10 @@ def rivals(
         led = lead_from(system, law, state, nuisances_of(found, one))
         if not (led.to_end and led.left < noise_of(system)):
             # Straight lines go far along what tells little, and may miss the valley.
-            closer = _as_strong(system, law, state, same=True) or state
-            led = min(led, lead_from(system, law, closer, law.nuisance), key=cost_of)
+            closer = _as_strong(system, law, state, same=True)
+            start, again = closer or state, closer is None
+            other = lead_from(system, law, start, law.nuisance, again=again)
+            led = min(led, other, key=cost_of)
         if led.left < noise_of(system) and cost_of(led) > cost_of(law) + WORTH_IT:
             # In few places by straight lines, and parameters make up for the others.
             there = _as_strong(system, law, state, same=False)

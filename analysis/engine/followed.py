@@ -15,6 +15,10 @@ STEP, FINE = 5e-4, 0.025
 its step. Longer ones turn the phase: at 40 times this, what differences are off by is larger than
 what the weakest directions do, and steps along them lead nowhere."""
 
+FAR_OFF, BENT = 3.0, 2.0
+"""A parameter that is off by more sigmas than this makes up for nothing: it is off. Others do where
+they are off by more than this, squared, on average."""
+
 
 class Lent(NamedTuple):
     """What nuisances do to all samples about some hypothesis, and what is left there.
@@ -105,6 +109,12 @@ class Followed:
     def is_bent(self) -> bool:
         """Whether parameters are more than a sigma off on average: they make up for something."""
         return self.strain > len(self.nuisance)
+
+    @property
+    def is_bent_throughout(self) -> bool:
+        """Whether many parameters make up for something; few, far off, are causes of their own."""
+        few_far = np.minimum(np.abs(self.nuisance), FAR_OFF)
+        return float(few_far @ few_far) > BENT * len(self.nuisance)
 
     @property
     def to_end(self) -> bool:

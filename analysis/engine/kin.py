@@ -54,7 +54,12 @@ def lead_instead(samples: Samples, law: Followed, known: str, other: str) -> Fol
 
 
 def lead_from(
-    system: System, law: Followed, state: State, nuisance: Array | None = None
+    system: System,
+    law: Followed,
+    state: State,
+    nuisance: Array | None = None,
+    *,
+    again: bool = False,
 ) -> Followed:
     """Lead a hypothesis that is near another from where that one has come to the end.
 
@@ -72,20 +77,24 @@ def lead_from(
         The free numbers to begin with.
     nuisance
         And the parameters, in sigmas, shape (p,); None: where the other has come to.
+    again
+        It was led by growing windows before.
     """
     start = law.nuisance if nuisance is None else nuisance
     # Of several recordings each was led on its own: all at once, windows lose that again.
-    if not law.is_bent or has_several(system):
+    if not law.is_bent_throughout or has_several(system):
         return follow_ring(
             system, start, state, everything=True, near=True, ahead=law.costs, most=EFFORT,
             lent=law.lends,
         )  # fmt: skip
-    anew = follow_ring(system, np.zeros_like(start), state, everything=True)
-    if anew.to_end and anew.left < noise_of(system):
+    anew = None if again else follow_ring(system, np.zeros_like(start), state, everything=True)
+    if anew is not None and anew.to_end and anew.left < noise_of(system):
         return anew
     there = follow_ring(
         system, start, state, everything=True, near=True, ahead=law.costs, most=FAR_EFFORT
     )
+    if anew is None:
+        return there
     closer = anew if anew.to_end and cost_of(anew) < cost_of(there) else there
     return replace(closer, effort=anew.effort + there.effort)
 

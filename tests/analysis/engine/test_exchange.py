@@ -121,7 +121,9 @@ def test_one_that_straight_lines_lose_is_led_once_more_as_strong_as_the_cause_wa
     known = {one.name: one for one in system.candidates}
     begun: list[tuple[float, float]] = []
 
-    def lost(_: object, law: Followed, state: State, nuisance: Array) -> Followed:
+    def lost(
+        _: object, law: Followed, state: State, nuisance: Array, *, again: bool = False
+    ) -> Followed:
         begun.append((state.term_values()["double", "size"], float(nuisance[0])))
         return replace(law, state=state, left=100.0, misfit=1e6)
 

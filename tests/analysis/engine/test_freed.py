@@ -128,3 +128,10 @@ def test_what_a_cause_is_worth_to_first_order_is_what_it_costs_to_be_without_it(
     assert pair.rises_without("tone") == pytest.approx(cost_of(fewer) - cost_of(pair), abs=3.0)
     assert pair.rises_without("damping") > 1e3
     assert replace(pair, information=None).rises_without("tone") == np.inf
+
+
+def test_few_parameters_far_off_make_up_for_nothing_many_a_little_off_do() -> None:
+    far, many = np.zeros(20), np.full(20, 1.6)
+    far[0] = 100.0
+    assert [Followed(one, None).is_bent for one in (far, many)] == [True, True]
+    assert [Followed(one, None).is_bent_throughout for one in (far, many)] == [False, True]
