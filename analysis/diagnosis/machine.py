@@ -197,7 +197,9 @@ class RecordedMachine:
 
     def bend(self, here: Point, there: Point) -> Array:
         """See `Bent`."""
-        return self.trim.bend(here, there)
+        names = [one.run.name for one in self.recordings]
+        asked = [i for i, name in enumerate(names) if not there.records or name in there.records]
+        return self.trim.bend(here, there, asked)
 
     @property
     def trim(self) -> Trim:

@@ -49,20 +49,27 @@ class Trim:
         """By how much the trim of a point makes cables tighter in a run, shape (8,), N."""
         return self._at(point, record, None) - self._at(point, record, 0.0)
 
-    def bend(self, here: Point, there: Point) -> Array:
+    def bend(self, here: Point, there: Point, records: Sequence[int]) -> Array:
         """By how much pretensions of `there` are to move, in sigmas, shape (p,).
 
         Then each cable is as tight as where the trim and what it makes up for had moved it one
         without the other.
+
+        Parameters
+        ----------
+        here, there
+            From where, and where to.
+        records
+            Numbers of the runs that are asked: pretensions of others stay.
         """
         found = np.zeros(len(self._sigma))
         farther = (there.nuisance - here.nuisance)[self._share] * self._sigma[self._share]
         if farther.any():
-            for record, cables in self._tight.items():
+            for record in records:
                 more_n = float(farther.sum()) * (
                     self._whole_n(there, record) - self._whole_n(here, record)
                 )
-                for i, cable in cables:
+                for i, cable in self._tight.get(record, ()):
                     found[i] = -more_n[cable] / self._sigma[i]
         return found
 

@@ -164,3 +164,17 @@ def test_however_high_a_machine_rings_that_is_let_go_its_rows_are_close_enough(
         noise = np.sqrt(np.diag(bundle.covariance))
         missed = np.sqrt(np.mean((found - wanted) ** 2, axis=0)) / noise
         assert missed.max() < 0.05, bundle.names
+
+
+def test_pretensions_of_a_run_that_is_not_asked_for_stay(recorded: Recording) -> None:
+    other = replace(recorded, run=replace(recorded.run, folder=Path("other")))
+    machine = RecordedMachine([recorded, other], NAMES, workers=1)
+    here, there = (Point(np.full(len(machine.nuisances), size)) for size in (0.2, 0.7))
+    both = machine.bend(here, there)
+    asked = machine.bend(here, replace(there, records=(recorded.run.name,)))
+    tight = [one.record for one in machine.meanings if one.parameter == "pretension_offset_n"]
+    assert sorted(set(tight)) == [0, 1]
+    of = np.array([one.record for one in machine.meanings])
+    assert asked[of == 0] == pytest.approx(both[of == 0])
+    assert np.abs(both[of == 1]).max() > 0.01
+    assert np.array_equal(asked[of == 1], np.zeros(np.count_nonzero(of == 1)))
