@@ -9,6 +9,7 @@ import pytest
 
 from analysis.diagnosis.improve import write_improved
 from analysis.diagnosis.nuisances import Meaning
+from analysis.diagnosis.trim import Trim
 from analysis.engine.system import Nuisance, Point
 from cdpr8.errors import RigFileError
 from cdpr8.rigfile import load_rig, packaged_rig_path
@@ -27,10 +28,12 @@ def moved(
     rig = load_rig(tmp_path / "rig.toml")
     stiffness = Meaning("stiffness", "stiffness_share", 8)
     meanings = (*PRETENSIONS, Meaning("mass", "mass_share"), stiffness)
+    nuisances = [Nuisance(one.effect, 1.0, "") for one in meanings]
     machine: Any = SimpleNamespace(
         recordings=[SimpleNamespace(run=run, rig=rig)],
-        nuisances=[Nuisance(one.effect, 1.0, "") for one in meanings],
+        nuisances=nuisances,
         meanings=meanings,
+        trim=Trim(meanings, nuisances, lambda *_: np.zeros(8)),
     )
     found = SimpleNamespace(nuisance=np.array([*offsets_n, mass_share, stiffness_share]))
     chosen = SimpleNamespace(weighed=found, point=Point(found.nuisance))
