@@ -150,23 +150,18 @@ def _measured(found: Measurement, names: Sequence[str], log_odds: float | None) 
 def _check(judgement: Judgement) -> dict[str, Any]:
     """What would show a named cause wrong."""
     names = [one.name for one in judgement.causes]
+    what, minutes = "record the same motion at half the amplitude and at another frequency", 2.0
     if judgement.verdict == "parameter":
         what = f"measure what {names[0]} stands for by itself, and correct the rig file"
         minutes = 30.0
     elif not names:
         # Nothing was named: there is no rig file with it in to compare with.
-        what = (
-            "record the same motion at half the amplitude and at another frequency: whether what "
-            "is missed halves too, and whether it moves with the drive, tells friction, a number "
-            "that is off and a ring apart"
+        what += (
+            ": whether what is missed halves too, and whether it moves with the drive, tells "
+            "friction, a number that is off and a ring apart"
         )
-        minutes = 2.0
     else:
-        what = (
-            "record the same motion at half the amplitude and at another frequency, and compare it "
-            "with improved.toml: a law that is right foretells it to the noise"
-        )
-        minutes = 2.0
+        what += ", and compare it with improved.toml: a law that is right foretells it to the noise"
     return {
         "what": what,
         "separates": names,

@@ -13,8 +13,7 @@ from analysis.engine.cause import Cause
 from analysis.engine.confirm import Confirmation
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.locate import Finding
-from analysis.engine.restated import restatements
-from analysis.engine.until import Until
+from analysis.engine.until import until_of
 
 WHEN = {
     "pulley_coulomb": "velocity reversal",
@@ -100,7 +99,7 @@ def not_ruled_out(
 
 def _foretold(diagnosis: Diagnosis) -> dict[str, Any]:
     """Up to when the recording counts, in s, and what begins at once later; null: no end."""
-    cut = next((one for one in restatements(diagnosis.system) if isinstance(one, Until)), None)
+    cut = until_of(diagnosis.system)
     at_once = None if cut is None else cut.begins
     return {
         "foretold_until_s": None if cut is None else cut.end_s,

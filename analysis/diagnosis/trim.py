@@ -38,10 +38,10 @@ class Trim:
         pretension_n: Callable[[Point, int], Array],
     ) -> None:
         self._share = [i for i, one in enumerate(meanings) if one.parameter == TRIM]
-        tight = [(i, one) for i, one in enumerate(meanings) if one.parameter == TIGHT]
         self._tight: dict[int, list[tuple[int, int]]] = {}
-        for i, one in tight:
-            self._tight.setdefault(one.record, []).append((i, one.cable - 1))
+        for i, one in enumerate(meanings):
+            if one.parameter == TIGHT:
+                self._tight.setdefault(one.record, []).append((i, one.cable - 1))
         self._sigma = np.array([one.sigma for one in nuisances])
         self._pretension_n = pretension_n
 

@@ -25,7 +25,7 @@ from analysis.engine.restated import restatements
 from analysis.engine.search import REMAINS_ALONE, Search, search
 from analysis.engine.summary import place_of, summary
 from analysis.engine.system import Nuisance, System
-from analysis.engine.until import Until
+from analysis.engine.until import until_of
 from cdpr8.errors import UsageError
 
 Stage = Literal["align", "locate", "name", "confirm"]
@@ -195,7 +195,8 @@ def diagnose(
     if (judgement.causes and far) or _may_be(beyond, judgement):
         judgement = _unsure(judgement)
     remains = _remains(searched, judgement, noise)
-    at_once = any(one.begins for one in restatements(system) if isinstance(one, Until))
+    cut = until_of(system)
+    at_once = cut is not None and cut.begins is not None
     if (remains.significant or at_once) and judgement.verdict == "none":
         judgement = replace(judgement, verdict="unexplained")
     if judgement.verdict == "none" and not rings(system):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from analysis.engine.begins import Begins
 from analysis.engine.bundle import Bundle, Segment
-from analysis.engine.restated import Restated
+from analysis.engine.restated import Restated, restatements
 from analysis.engine.system import Point, System
 
 FORETOLD = (
@@ -89,3 +89,8 @@ def _together(segments: Sequence[Segment]) -> list[list[Segment]]:
         else:
             found.append([one])
     return found
+
+
+def until_of(system: System) -> Until | None:
+    """Up to when a system's recordings are foretold; None: to their end."""
+    return next((one for one in restatements(system) if isinstance(one, Until)), None)
