@@ -118,12 +118,15 @@ def follow_ring(
     lefts = [(way.left(share), share) for share in np.linspace(0.0, 1.0, STRETCHES + 1)[1:]]
     lost = (one for one in lefts if one[0] > max(FAINT, way.allowed(one[1])))
     left, share = next(lost, lefts[-1])
+    to_noise = share == 1.0 and left <= FAINT
+    # Where it began as far from what is known, nothing was told better.
+    made_up = about is not None and is_far(way.at) and not is_far(about)
     return replace(
         way.arrived(),
         share=float(share),
         left=left,
         telling=float(next((one[1] for one in lefts if one[0] > TELLING), lefts[-1][1])),
-        about=about if share < 1.0 or left > FAINT or is_far(way.at) else None,
+        about=about if made_up or not to_noise else None,
         misfit=float(way.here @ way.here),
         roughness=samples.roughness(way.here),
         effort=samples.effort,
