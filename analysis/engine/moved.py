@@ -171,16 +171,17 @@ def released_beside(
     nuisances, known = refiner.system.nuisances, refiner.candidates
     likeliest = sorted(fitted, key=lambda one: -one.log_score)
     best = likeliest[0]
-    room = 0 < len(best.hypothesis.parts) < most_causes
-    if not (room and best.left < noise):
+    if not (best.hypothesis.parts and best.left < noise):
         return [], {}
     on = [one for one in likeliest if one.hypothesis.parts]
+    beside = _led_beside(nuisances, on, noise)
+    if len(best.hypothesis.parts) >= most_causes:
+        return [], beside
     named = {one.hypothesis.names for one in fitted}
     far = moved_far(nuisances, best.point.nuisance)
     free = far.keys() & known.keys() - set(best.hypothesis.names)
     cause = max(free, key=lambda one: far[one], default="")
     new: list[Fitted] = []
-    beside: dict[tuple[str, ...], tuple[str, float]] = {}
     for one in on[:CONTENDERS] if cause else ():
         fewer = one.hypothesis.names
         sigmas = moved_far(nuisances, one.point.nuisance).get(cause, 0.0)
@@ -191,6 +192,25 @@ def released_beside(
         if both not in named:
             new.append(released(refiner, one, cause, lead=one is best))
     return new, beside
+
+
+def _led_beside(
+    nuisances: Sequence[Nuisance], likeliest: Sequence[Fitted], noise: float
+) -> dict[tuple[str, ...], tuple[str, float]]:
+    """Which of the likeliest were led with such a number as one cause more."""
+    without: dict[tuple[str, ...], Fitted] = {}
+    for one in likeliest:
+        if one.left < noise + NEARLY:
+            without.setdefault(one.hypothesis.names, one)
+    found: dict[tuple[str, ...], tuple[str, float]] = {}
+    for one in likeliest[:CONTENDERS]:
+        both = one.hypothesis.names
+        for cause in both:
+            fewer = without.get(tuple(name for name in both if name != cause))
+            far = {} if fewer is None else moved_far(nuisances, fewer.point.nuisance)
+            if far.get(cause, 0.0) > found.get(both, ("", 0.0))[1]:
+                found[both] = cause, far[cause]
+    return found
 
 
 def raised(

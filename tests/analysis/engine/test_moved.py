@@ -1,16 +1,19 @@
 """A number that moved too far beside a law is told, as likely as that says; and what it did by
 itself is no fit of nothing left out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from analysis.engine import diagnose
 from analysis.engine.hypothesis import Part
 from analysis.engine.judge import SECOND
-from analysis.engine.moved import EVEN, raised
+from analysis.engine.look import look
+from analysis.engine.moved import EVEN, freed, raised, released_beside
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
-from tests.analysis.engine.test_freed import RATE, Detuned
+from tests.analysis.engine.test_freed import RATE, Detuned, beside_damping
 from tests.analysis.engine.test_judge import CANDIDATES, DAMPING, STEP, fitted, refiner, state_of
 from tests.analysis.engine.test_ring_fit import SIGMA, ring
 
@@ -39,6 +42,27 @@ def test_before_has_what_is_told_as_it_was_known_to_be() -> None:
     )
     assert after == pytest.approx(1.0, abs=0.1)
     assert before > 2.0, "five sigmas of a tone, that nuisances alone would have followed"
+
+
+@pytest.mark.parametrize(("off", "is_told"), [(5.0, True), (1.0, False)])
+def test_a_number_that_was_led_beside_a_law_counts_as_it_had_moved(
+    off: float, is_told: bool
+) -> None:
+    system = Detuned(ring(off * SIGMA, RATE, 0.0, 0.0))
+    refiner = Refiner(system, *look(system))
+    alone = beside_damping(system, off)
+    both = freed(system, refiner.candidates, alone, "tone")
+    fits = []
+    for led, score in ((both, 0.0), (alone, -10.0)):
+        assert led.state is not None
+        there = refiner.standing(led.state, led.nuisance)
+        fits.append(replace(there, log_score=score, left=1.0))
+    new, beside = released_beside(refiner, fits, noise=1.1, most_causes=2)
+    assert new == []
+    assert set(beside) == ({("damping", "tone")} if is_told else set())
+    for cause, sigmas in beside.values():
+        assert cause == "tone"
+        assert sigmas == pytest.approx(off, rel=0.1)
 
 
 @pytest.mark.parametrize(("sigmas", "told"), [(EVEN, 0.5), (5.0, 0.98), (2.0, 0.22)])
