@@ -22,7 +22,7 @@ from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.state import State
 from analysis.engine.sure import as_sure
-from analysis.engine.system import Nuisance, System
+from analysis.engine.system import Nuisance, Point, System
 from analysis.engine.weights import temper_of
 
 Beside = Mapping[tuple[str, ...], tuple[str, float]]
@@ -197,7 +197,7 @@ def released_beside(
 def _led_beside(
     nuisances: Sequence[Nuisance], likeliest: Sequence[Fitted], noise: float
 ) -> dict[tuple[str, ...], tuple[str, float]]:
-    """Which of the likeliest were led with such a number as one cause more."""
+    """Which of the likeliest were led with such a number as one cause more, and still move it."""
     without: dict[tuple[str, ...], Fitted] = {}
     for one in likeliest:
         if one.left < noise + NEARLY:
@@ -207,10 +207,21 @@ def _led_beside(
         both = one.hypothesis.names
         for cause in both:
             fewer = without.get(tuple(name for name in both if name != cause))
-            far = {} if fewer is None else moved_far(nuisances, fewer.point.nuisance)
-            if far.get(cause, 0.0) > found.get(both, ("", 0.0))[1]:
-                found[both] = cause, far[cause]
+            if fewer is not None:
+                sigmas = min(_moved(nuisances, led.point, cause) for led in (one, fewer))
+                if sigmas > found.get(both, ("", 0.0))[1]:
+                    found[both] = cause, sigmas
     return found
+
+
+def _moved(nuisances: Sequence[Nuisance], at: Point, cause: str) -> float:
+    """By how many sigmas a cause's numbers are off, by whatever name; zero: not far."""
+    on = at.effects.get(cause)
+    moved = at.nuisance.copy()
+    for i, one in enumerate(nuisances):
+        if on is not None and one.cause == cause and one.term:
+            moved[i] += on.values.get(one.term, 0.0) / one.sigma
+    return moved_far(nuisances, moved).get(cause, 0.0)
 
 
 def raised(

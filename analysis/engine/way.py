@@ -13,6 +13,7 @@ from analysis.engine.differences import differences
 from analysis.engine.followed import Followed, Lent
 from analysis.engine.known import Known
 from analysis.engine.part import has_several
+from analysis.engine.relieved import relieved
 from analysis.engine.ring_samples import Samples
 from analysis.engine.step import Step, Stepper
 
@@ -103,7 +104,7 @@ class Way:
     ) -> None:
         self._samples = samples
         self._known = Known.priors(start) if known is None else known
-        self.at = start
+        self.at = self._relieved(start)
         self.here = np.zeros(0)
         self._seen = 0.0
         self._columns: Array | None = None
@@ -307,7 +308,13 @@ class Way:
         missed = self.here - found.residual - moved @ self._columns
         scaled = moved / self._steps
         self._columns += np.outer(scaled / self._steps, missed) / float(scaled @ scaled)
-        self.at, self.here, self._fresh = found.there, found.residual, False
+        self.at, self.here, self._fresh = self._relieved(found.there), found.residual, False
+
+    def _relieved(self, at: Followed) -> Followed:
+        """The same simulation, where what is known of numbers says that it costs less."""
+        found = relieved(self._samples.system, at)
+        less = self._known.cost(found.numbers) < self._known.cost(at.numbers)
+        return found if less else at
 
     def arrived(self) -> Followed:
         """Where one is, with what numbers do to all samples about there, as far as is known."""

@@ -44,14 +44,16 @@ def test_before_has_what_is_told_as_it_was_known_to_be() -> None:
     assert before > 2.0, "five sigmas of a tone, that nuisances alone would have followed"
 
 
-@pytest.mark.parametrize(("off", "is_told"), [(5.0, True), (1.0, False)])
+@pytest.mark.parametrize(
+    ("off", "back", "is_told"), [(5.0, 0.0, True), (1.0, 0.0, False), (5.0, 4.0, False)]
+)
 def test_a_number_that_was_led_beside_a_law_counts_as_it_had_moved(
-    off: float, is_told: bool
+    off: float, back: float, is_told: bool
 ) -> None:
     system = Detuned(ring(off * SIGMA, RATE, 0.0, 0.0))
     refiner = Refiner(system, *look(system))
     alone = beside_damping(system, off)
-    both = freed(system, refiner.candidates, alone, "tone")
+    both = freed(system, refiner.candidates, replace(alone, nuisance=alone.nuisance - back), "tone")
     fits = []
     for led, score in ((both, 0.0), (alone, -10.0)):
         assert led.state is not None
