@@ -128,6 +128,12 @@ def _unexplained(said: Statement) -> str:
             f"{remains['begins_in']}, that nothing in the library of effects explains: a clamp or "
             "an anchor that slipped, a blow, or a sensor that jumped."
         )
+    if not causes and (until_s := remains.get("foretold_until_s")) is not None:
+        return (
+            f"Something was left out: parameters alone do not foretell the first {until_s:.1f} s, "
+            "and nothing in the library of effects foretells the rest. In that part it does too "
+            "little to be told."
+        )
     if not causes and not remains["significant"]:
         return (
             "In steady motion the simulation agrees with the recording, but no parameters within "

@@ -196,8 +196,8 @@ def diagnose(
         judgement = _unsure(judgement)
     remains = _remains(searched, judgement, noise)
     cut = until_of(system)
-    at_once = cut is not None and cut.begins is not None
-    if (remains.significant or at_once) and judgement.verdict == "none":
+    left_out = remains.significant or (cut is not None and cut.tells)
+    if left_out and judgement.verdict == "none":
         judgement = replace(judgement, verdict="unexplained")
     if judgement.verdict == "none" and not rings(system):
         notes = (*notes, *_differs(remains.findings))

@@ -139,9 +139,8 @@ def search(
     if found.foretells is not None and not isinstance(system, Until):
         best = found.foretells
         start = Start(best.nuisance, (best,))
-        return search(
-            Until(system, best.share), tell, anew=anew, most_causes=most_causes, start=start
-        )
+        cut = Until(system, best.share, by_cause=True)
+        return search(cut, tell, anew=anew, most_causes=most_causes, start=start)
     if not rings(system):
         refiner = refiner if anew else Refiner(system, lens, data, calibrated, anew=True)
         found = found._replace(fitted=settled(refiner, null, found.fitted, as_they_are=anew))

@@ -33,18 +33,34 @@ class Until(Restated):
         Of the time of each bundle, above 0.
     begins
         What begins at once after that: it was left out, whatever it is.
+    by_cause
+        A cause foretells so much, and parameters alone do not: something was left out, whatever
+        that part says of what it is.
     """
 
-    def __init__(self, stated: System, share: float, begins: Begins | None = None) -> None:
+    def __init__(
+        self,
+        stated: System,
+        share: float,
+        begins: Begins | None = None,
+        *,
+        by_cause: bool = False,
+    ) -> None:
         super().__init__(stated)
         self.share = share
         self.begins = begins
+        self.by_cause = by_cause
         self.bundles = tuple(_cut(one, share) for one in stated.bundles)
 
     @property
     def end_s(self) -> float:
         """When the last that counts was recorded."""
         return max(one.end_s for bundle in self.bundles for one in bundle.segments)
+
+    @property
+    def tells(self) -> bool:
+        """Whether something was left out, even where nothing was before then."""
+        return self.begins is not None or self.by_cause
 
     @property
     def note(self) -> str:

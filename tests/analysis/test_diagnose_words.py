@@ -178,6 +178,15 @@ def test_what_nothing_foretells_is_told_to_have_not_counted() -> None:
     Statement.model_validate(said)
 
 
+def test_what_a_cause_alone_foretells_a_part_of_was_left_out() -> None:
+    said = statement("unexplained", [])
+    said["remains"] = {**said["remains"], "foretold_until_s": 2.06, "significant": False}
+    assert headline(said).startswith(
+        "Something was left out: parameters alone do not foretell the first 2.1 s"
+    )
+    Statement.model_validate(said)
+
+
 def test_what_begins_at_once_is_told_with_when_and_where() -> None:
     said = statement("unexplained", [])
     late = {"foretold_until_s": 4.5, "begins_s": 5.17, "begins_in": "tension 4"}

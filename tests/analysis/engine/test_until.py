@@ -1,9 +1,14 @@
 """A motion that grows of itself late in a recording names nothing: what came before counts."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from analysis.engine import Bundle, Segment, diagnose
+from analysis.engine.finder import Tell
+from analysis.engine.search import Search, search
+from analysis.engine.system import System
 from analysis.engine.until import Until
 from tests.analysis.engine.test_ring_fit import SIGMA, T_S, LetGo, ring
 
@@ -24,6 +29,17 @@ def test_what_grows_late_and_nothing_foretells_does_not_count() -> None:
     assert isinstance(found.system, Until)
     assert found.system.end_s < GROWS_S + 1.0
     assert any("does not count" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(("by_cause", "verdict"), [(False, "none"), (True, "unexplained")])
+def test_where_a_cause_was_needed_to_foretell_so_much_something_was_left_out(
+    by_cause: bool, verdict: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def cut(system: System, tell: Tell | None, **how: Any) -> Search:
+        return search(Until(system, 0.5, by_cause=by_cause), tell, **how)
+
+    monkeypatch.setattr("analysis.engine.diagnosis.search", cut)
+    assert diagnose(LetGo(ring(2.0 * SIGMA, 0.0, 0.0, 0.0))).verdict == verdict
 
 
 def test_what_can_be_foretold_counts_to_its_end() -> None:
