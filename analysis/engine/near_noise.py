@@ -124,7 +124,10 @@ def near_noise(
     strides = strides_of(system.candidates, system.nuisances)
     about = faint(system, nothing, system.candidates, progress, near=start.seen, strides=strides)
     screened, faintly = faint_search(about, refiner, candidates)
-    other = _out_of_hollow(system, start.nuisance, nothing, faintly)
+    # Known better, parameters come to no other hollow than they came to before.
+    other = None
+    if start.seen is None:
+        other = _out_of_hollow(system, start.nuisance, nothing, faintly)
     if other is not None:
         nothing = other
         about = faint(system, nothing, system.candidates, progress, strides=strides)

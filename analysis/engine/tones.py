@@ -52,7 +52,8 @@ def rings(line_hz: float, order: int, segment: Segment, bundle: Bundle) -> bool:
         return True
     if any(abs(line_hz - tone) < max(NEAR * tone, wide_hz) for tone in bundle.tones_hz):
         return True
-    if not (line_hz or order):
+    # Whatever else is seen at the drive's own line, most of it is driven, and the rest leaks there.
+    if not (line_hz or order) or (line_hz == segment.fundamental_hz and order == 0):
         return False
     # What is sampled slower than a tone shows it elsewhere.
     rate_hz = (len(bundle.t_s) - 1) / (bundle.t_s[-1] - bundle.t_s[0])
