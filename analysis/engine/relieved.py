@@ -22,7 +22,7 @@ def relieved(system: System, at: Followed) -> Followed:
     system
         What is simulated.
     at
-        Where; only the point is of it in what is returned.
+        Where; what is told of it but for its point stays as it was told.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from analysis.engine.kin import lead_from
 from analysis.engine.look import look
 from analysis.engine.moved import freed
 from analysis.engine.refine import Refiner
-from analysis.engine.ring_fit import follow_ring
+from analysis.engine.ring_fit import follow_ring, is_far
 from analysis.engine.system import Point
 from tests.analysis.engine.test_by_ring import Tuned
 from tests.analysis.engine.test_ring_fit import DAMPING, SIGMA, ring, state_of
@@ -41,6 +41,19 @@ def search_of(system: Detuned) -> FollowedSearch:
     """A search that has led nothing yet."""
     nothing = follow_ring(system, np.zeros(1), everything=True)
     return FollowedSearch(Refiner(system, *look(system)), nothing, 2)
+
+
+def test_what_was_bent_as_far_where_it_began_is_asked_where_it_led_to() -> None:
+    system = Detuned(ring(OFF * SIGMA, RATE, 0.0, 0.0))
+    near = beside_damping(system, OFF)
+    assert near.to_end
+    assert is_far(near)
+    assert near.about is None
+    windows = follow_ring(system, np.zeros(1), state_of(DAMPING, RATE), everything=True)
+    assert windows.to_end
+    assert is_far(windows)
+    assert windows.about is not None, "before it was bent, something was told"
+    assert not is_far(windows.about)
 
 
 def test_what_is_freed_is_the_same_simulation_without_its_strain() -> None:
