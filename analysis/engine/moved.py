@@ -184,7 +184,7 @@ def released_beside(
     new: list[Fitted] = []
     for one in on[:CONTENDERS] if cause else ():
         fewer = one.hypothesis.names
-        sigmas = moved_far(nuisances, one.point.nuisance).get(cause, 0.0)
+        sigmas = _moved(nuisances, one.point, cause)
         both = tuple(sorted({*fewer, cause}))
         if both in beside or not (sigmas and one.left < noise + NEARLY and cause not in fewer):
             continue

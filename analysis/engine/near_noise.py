@@ -125,9 +125,8 @@ def near_noise(
     about = faint(system, nothing, system.candidates, progress, near=start.seen, strides=strides)
     screened, faintly = faint_search(about, refiner, candidates)
     # Known better, parameters come to no other hollow than they came to before.
-    other = None
-    if start.seen is None:
-        other = _out_of_hollow(system, start.nuisance, nothing, faintly)
+    known_better = start.seen is not None
+    other = None if known_better else _out_of_hollow(system, start.nuisance, nothing, faintly)
     if other is not None:
         nothing = other
         about = faint(system, nothing, system.candidates, progress, strides=strides)
