@@ -1,6 +1,6 @@
 """CDPR-8 as a system for the engine: runs of one machine, simulated as they were recorded."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -17,6 +17,7 @@ from analysis.diagnosis.lost_frames import lost_frames
 from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
 from analysis.diagnosis.nuisances import Meaning, nuisances
 from analysis.diagnosis.recording import Recording
+from analysis.diagnosis.sharing import Alike, Share, lanes_from, shares
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.diagnosis.sighting import sighting_of
 from analysis.diagnosis.trim import Trim
@@ -34,17 +35,8 @@ Array = NDArray[np.float64]
 Key = tuple[object, ...]
 """Equal where the same is simulated."""
 
-LANES_FROM = 8
-"""Fewer tasks than this are faster one by one."""
-
-LOOKING = 0.3
-"""What it takes to look at a simulation once more, of what it takes to simulate."""
-
 LATE_S = 0.3
 """Cameras and cells may be late by so much: a simulation goes on for longer than what is seen."""
-
-GROUP = 16
-"""As many tasks as lanes are simulated by one process, and looked at."""
 
 
 @dataclass(frozen=True)
@@ -54,14 +46,6 @@ class _Job:
     key: Key
     task: Task
     sight: Sight
-
-
-@dataclass(frozen=True)
-class Share:
-    """Some points of one run: place of the point -> what to simulate."""
-
-    record: int
-    points: Mapping[int, Point]
 
 
 class RecordedMachine:
@@ -177,10 +161,11 @@ class RecordedMachine:
         proportion to the damping: that of half the damping, twice, less that of the whole has the
         ring of neither and no bias to first order.
         """
-        shares = [part for record in range(len(self.recordings))
-                  for part in self._shares(points, record)]  # fmt: skip
+        asked = [self._alike(points, record) for record in range(len(self.recordings))]
+        self.simulated += sum(one.simulations for every in asked for one in every)
+        work = shares(asked, self._workers)
         found: list[dict[int, Prediction]] = [{} for _ in self.recordings]
-        for share, seen in zip(shares, self._crew.do(shares), strict=True):
+        for share, seen in zip(work, self._crew.do(work), strict=True):
             found[share.record].update(seen)
         return [
             reduce([bundle for of_record, none in zip(found, self._nothing, strict=True)
@@ -210,36 +195,18 @@ class RecordedMachine:
         """What cables are tightened to in a run, shape (8,), N."""
         return np.asarray(self.job(point, record).task.machine.pretension)
 
-    def _shares(self, points: Sequence[Point], record: int) -> list[Share]:
-        """One run of all points, in shares that are simulated side by side."""
+    def _alike(self, points: Sequence[Point], record: int) -> list[Alike]:
+        """What is simulated of one run, like beside like."""
         together: dict[Key, dict[int, Point]] = {}
         name = self.recordings[record].run.name
         for place, point in enumerate(points):
             if not point.records or name in point.records:
                 together.setdefault(self._key(point, record), {})[place] = point
-        if not together:
-            return []
-        # Like simulations beside each other.
-        alike = [together[key] for key in sorted(together, key=str)]
-        count = sum(len(GUARDS[next(iter(places.values())).ring]) for places in alike)
-        self.simulated += count
-        # As many for each process, and each about as long, but no more than there are lanes.
-        parts = self._rounds(count) * self._workers
-        cost = np.array([1.0 + LOOKING * (len(places) - 1) for places in alike])
-        part = (np.cumsum(cost) - 0.5 * cost) * parts // cost.sum()
-        if np.bincount(part.astype(int)).max() > GROUP:
-            part = np.arange(len(alike)) * parts // len(alike)
-        shares = []
-        for number in range(parts):
-            chosen = [alike[i] for i in np.flatnonzero(part == number)]
-            if chosen:
-                of = {place: one for places in chosen for place, one in places.items()}
-                shares.append(Share(record, of))
-        return shares
-
-    def _rounds(self, count: int) -> int:
-        """How many shares each process does of so many simulations."""
-        return max(-(-count // (GROUP * self._workers)), 1)
+        found = []
+        for key in sorted(together, key=str):
+            first = next(iter(together[key].values()))
+            found.append(Alike(together[key], len(GUARDS[first.ring])))
+        return found
 
     def _key(self, point: Point, record: int) -> Key:
         """Equal where the same is simulated, however it is looked at."""
@@ -265,10 +232,11 @@ class RecordedMachine:
             alike.setdefault(task.thrifty(rate_hz, finer), []).append(key)
         done: dict[Key, Simulation] = {}
         for (method, step_s), keys in alike.items():
+            mine = [tasks[key] for key in keys]
+            fewest = lanes_from({one.name for task in mine for one in task.acting})
             solved = simulate_many(
-                [tasks[key] for key in keys],
-                method=method, step_s=step_s, output_rate_hz=rate_hz, fewest=LANES_FROM,
-            )  # fmt: skip
+                mine, method=method, step_s=step_s, output_rate_hz=rate_hz, fewest=fewest
+            )
             done.update(zip(keys, solved, strict=True))
         seen: dict[tuple[object, ...], Prediction] = {}
         found: dict[int, Prediction] = {}

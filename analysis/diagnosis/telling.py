@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.diagnosis.machine import LANES_FROM, RecordedMachine
+from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.menu import Experiment
+from analysis.diagnosis.sharing import LANES_FROM
 from analysis.engine.array import Array
 from analysis.engine.fitted import Fitted
 from analysis.engine.lens import Lens
