@@ -112,9 +112,8 @@ def by_ring(
         return Found(screened, fitted, faint=True, alone=about if near else None)
     foretold = 1.0 if led.arrived else _foretold(nothing)
     at_once = None if foretold == 1.0 else begins(system, nothing.point, foretold)
-    return Found(
-        (), (), faint=False, led=Led(led, single), foretold=foretold, begins=at_once
-    )  # fmt: skip
+    found = Found((), (), faint=False, led=Led(led, single), foretold=foretold, begins=at_once)
+    return found._replace(foretells=led.foretells_most)
 
 
 def _promised(
@@ -153,7 +152,8 @@ def _out_of_rest(refiner: Refiner, nothing: Followed, most_causes: int, tell: Pr
     rung = led.fitted() if led.arrived and not led.is_poor else None
     if rung is not None:
         return Found(screened, rung, faint=True)
-    return Found((), (), faint=False, led=Led(led, single))
+    found = Found((), (), faint=False, led=Led(led, single))
+    return found._replace(foretells=led.foretells_most)
 
 
 def _foretold(nothing: Followed) -> float:

@@ -11,9 +11,13 @@ SOME, CLEAR = 0.2, (1.1, 1.2, 1.3)
 to where no more than so much is left of the squared misfit of a sample, the least of these with
 which it is that long."""
 
+MOST, NEARLY_CLEAR = 0.7, 1.5
+"""Or what explains so much of the time, and leaves no more than this of it: a law that is not exact
+is off most where a motion has ended, and rings down where everything sticks."""
+
 
 def clear_part(samples: Samples, best: Followed) -> Followed | None:
-    """What foretells a part of the time to the noise, and parameters are hardly bent for it.
+    """What foretells a part of the time to the noise, or most of it nearly so, hardly bent for it.
 
     Where they are, it is what came as far as they were not: what grows of itself is followed on in
     any direction.
@@ -36,5 +40,6 @@ def clear_part(samples: Samples, best: Followed) -> Followed | None:
         return None
     shares, left = samples.means(best.point, best.share)
     longest = [float(max(shares[left < most], default=0.0)) for most in CLEAR]
-    clear = next((one for one in longest if one >= SOME), 0.0)
+    most = float(max(shares[left < NEARLY_CLEAR], default=0.0))
+    clear = most if most >= MOST else next((one for one in longest if one >= SOME), 0.0)
     return replace(best, share=clear) if clear else None

@@ -21,7 +21,7 @@ from analysis.engine.lens import Labels
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
 from analysis.engine.stride import LOST, SEEN, Stride
-from analysis.engine.system import Point, System
+from analysis.engine.system import Point, System, own_nuisances
 from analysis.engine.variance import SPREAD
 from analysis.engine.whiten import noise_leaves
 
@@ -140,8 +140,8 @@ def faint(
     own, steps = differences(samples, followed, here, known=len(known))
     numbers, count = len(steps), len(followed.nuisance)
     kept = _kept(near, followed, here)
-    same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
-    asked = _asked(candidates, followed.point, {*same})
+    same = own_nuisances(system.nuisances)
+    asked = _asked(candidates, followed.point, same)
     places = [place for place in asked if place not in kept]
     points = [asked[place][0] for place in places]
     sizes = np.array([asked[place][1] for place in places])
@@ -195,7 +195,7 @@ def faint(
 
 
 def _asked(
-    candidates: Sequence[Candidate], at: Point, same: Container[tuple[str | None, str | None]]
+    candidates: Sequence[Candidate], at: Point, same: Container[tuple[str, str]]
 ) -> dict[Place, tuple[Point, float]]:
     """What is simulated for each term that is no nuisance, and how much of it is on there."""
     found: dict[Place, tuple[Point, float]] = {}
@@ -258,7 +258,7 @@ def _terms(
     candidates: Sequence[Candidate],
     at: Point,
     numbers: Array,
-    same: Mapping[tuple[str | None, str | None], int],
+    same: Mapping[tuple[str, str], int],
 ) -> Columns:
     """Columns of terms that are parameters; zeros for the others."""
     terms: Columns = {}

@@ -10,7 +10,7 @@ from analysis.engine.all_samples import (
     farthest_first,
     tells_more,
 )
-from analysis.engine.clear_part import clear_part
+from analysis.engine.clear_part import MOST, clear_part
 from analysis.engine.cycles import valley
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
@@ -316,6 +316,12 @@ class FollowedSearch(ToldLeader):
             clear = None if self.arrived else clear_part(self._samples, self._best)
             self._foretold = self._best, clear
         return self._foretold[1]
+
+    @property
+    def foretells_most(self) -> Followed | None:
+        """The same, where that is most of the time: lines need not be asked."""
+        found = self.foretells
+        return None if found is None or found.share < MOST else found
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""

@@ -103,7 +103,9 @@ def part_log_prior(candidate: Candidate, part: Part, *, moved: bool = True) -> f
     free = 0 if candidate.fixed else len(part.groups(candidate))
     if not moved:
         return total - LOG_COST * free - log(len(candidate.variants()))
-    shapes = sum(not shape.whole for shape in candidate.shapes_of(part.terms))
+    fitted = [shape for shape in candidate.shapes_of(part.terms) if not shape.whole]
+    # Where a place begins in each of several recordings is told by each or costs nothing.
+    shapes = sum(not shape.term for shape in fitted) + len({shape.term for shape in fitted} - {""})
     tried = 1
     for shape in candidate.shapes:
         tried *= len(shape.grid) if shape.whole and shape.grid else 1

@@ -25,7 +25,7 @@ from analysis.engine.ring_samples import Samples
 from analysis.engine.screen import limits
 from analysis.engine.solve import bounded
 from analysis.engine.state import State
-from analysis.engine.system import System
+from analysis.engine.system import System, own_nuisances
 
 ROUNDS, TRIED = 12, 2
 """So often one parameter is exchanged; so many exchanges are led each time until one is closer."""
@@ -90,7 +90,7 @@ class _Numbers:
     """Terms that are nuisances as well."""
 
     def __init__(self, system: System, candidates: Mapping[str, Candidate]) -> None:
-        same = {(one.cause, one.term) for one in system.nuisances}
+        same = own_nuisances(system.nuisances)
         self.candidates = [
             one
             for one in candidates.values()

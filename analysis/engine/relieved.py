@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.engine.followed import Followed
-from analysis.engine.system import System
+from analysis.engine.system import System, own_nuisances
 
 
 def relieved(system: System, at: Followed) -> Followed:
@@ -31,7 +31,7 @@ def relieved(system: System, at: Followed) -> Followed:
     """
     if at.state is None:
         return at
-    places = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
+    places = own_nuisances(system.nuisances)
     nuisance, values, moves = at.nuisance.copy(), at.state.values.copy(), False
     for i in at.state.free:
         number = at.state.numbers[i]

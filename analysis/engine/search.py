@@ -134,7 +134,7 @@ def search(
     if not found.fitted and found.foretold < 1.0 and not isinstance(system, Until):
         cut = Until(system, found.foretold, found.begins)
         return search(cut, tell, anew=anew, most_causes=most_causes)
-    if not found.fitted:
+    if not found.fitted and (found.foretells is None or isinstance(system, Until)):
         found = by_lines(refiner, null, most_causes, tell, found.led)
     if found.foretells is not None and not isinstance(system, Until):
         best = found.foretells

@@ -11,7 +11,7 @@ from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate, Setting
 from analysis.engine.lens import Lens
 from analysis.engine.part import rings
-from analysis.engine.system import Point, System
+from analysis.engine.system import Point, System, own_nuisances
 
 Progress = Callable[[int, int], None]
 """Told how many points are done, of how many."""
@@ -113,7 +113,7 @@ def term_columns(
     base = Point(about, dict(effects or {}), ring="damped")
     points = [base]
     places: list[tuple[str, int, int, float]] = []
-    same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
+    same = own_nuisances(system.nuisances)
     columns: Columns = {}
     for candidate in candidates:
         for v, shapes in enumerate(candidate.variants()):

@@ -16,7 +16,7 @@ from analysis.engine.followed import Followed
 from analysis.engine.lens import Lens
 from analysis.engine.sensitivity import simulate_features, sound
 from analysis.engine.state import State
-from analysis.engine.system import System
+from analysis.engine.system import System, own_nuisances
 
 
 class Standing:
@@ -48,7 +48,7 @@ class Standing:
         self.lens = lens
         self.data = data
         self.candidates = {one.name: one for one in system.candidates}
-        self._same = {(one.cause, one.term): i for i, one in enumerate(system.nuisances)}
+        self._same = own_nuisances(system.nuisances)
         self._problem = calibrated.problem
         self.calibrated = calibrated
         self._rotation = calibrated.rotation

@@ -13,7 +13,7 @@ from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.state import State
-from analysis.engine.system import Nuisance, Point
+from analysis.engine.system import Nuisance, Point, own_nuisances
 
 SIZES = (1.0, 0.2)
 """Of its step, at which each cause is looked at."""
@@ -75,7 +75,7 @@ def strides_of(
     candidates, nuisances
         Of a system.
     """
-    same = {(one.cause, one.term) for one in nuisances}
+    same = own_nuisances(nuisances)
     found = []
     for one in candidates:
         terms = tuple(term.name for term in one.terms)

@@ -146,6 +146,11 @@ def tones_of(system: System, point: Point) -> Array:
     return system.tones_hz(point) if isinstance(system, Ringing) else np.zeros(0)
 
 
+def own_nuisances(nuisances: Sequence[Nuisance]) -> dict[tuple[str, str], int]:
+    """Which nuisance is the same number as a candidate's term: (candidate, term) -> its place."""
+    return {(one.cause, one.term): i for i, one in enumerate(nuisances) if one.cause and one.term}
+
+
 def free_of(system: System) -> list[Candidate]:
     """Candidates of a system whose magnitude is free."""
     return [one for one in system.candidates if not one.fixed]

@@ -57,3 +57,18 @@ def test_shapes_that_are_only_looked_at_cost_the_choice_of_a_look() -> None:
     assert without == part_log_prior(plain, Part(("size",))), "there is no shape"
     assert part_log_prior(shaped, part, moved=False) == pytest.approx(without - log(2.0))
     assert part_log_prior(shaped, part) == pytest.approx(without - 2.0 * LOG_COST_SHAPE)
+
+
+def test_what_a_place_begins_with_counts_once_of_however_many_recordings() -> None:
+    def begun(records: int) -> Candidate:
+        shapes = tuple(
+            Shape(f"bent@{place} in run {record}", "1", 0.0, -1.0, 1.0, term=f"size@{place}")
+            for place in PLACES
+            for record in range(records)
+        )
+        return Candidate("law", "law", "plant", TERMS, shapes=shapes)
+
+    part = Part(group("38"), shared=True)
+    several, one, none = (part_log_prior(begun(count), part) for count in (6, 1, 0))
+    assert several == one
+    assert none - one == pytest.approx(2 * LOG_COST_SHAPE)
