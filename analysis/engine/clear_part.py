@@ -12,12 +12,13 @@ to where no more than so much is left of the squared misfit of a sample, the lea
 which it is that long."""
 
 MOST, NEARLY_CLEAR = 0.7, 1.5
-"""Or what explains so much of the time, and leaves no more than this of it: a law that is not exact
-is off most where a motion has ended, and rings down where everything sticks."""
+"""What explains so much of the time, and leaves no more than this of it, is looked at in that, and
+lines need not be asked: a law that is not exact is off most where a motion has ended, and rings
+down where everything sticks."""
 
 
 def clear_part(samples: Samples, best: Followed) -> Followed | None:
-    """What foretells a part of the time to the noise, or most of it nearly so, hardly bent for it.
+    """What foretells a part of the time to the noise, and parameters are hardly bent for it.
 
     Where they are, it is what came as far as they were not: what grows of itself is followed on in
     any direction.
@@ -40,6 +41,30 @@ def clear_part(samples: Samples, best: Followed) -> Followed | None:
         return None
     shares, left = samples.means(best.point, best.share)
     longest = [float(max(shares[left < most], default=0.0)) for most in CLEAR]
-    most = float(max(shares[left < NEARLY_CLEAR], default=0.0))
-    clear = most if most >= MOST else next((one for one in longest if one >= SOME), 0.0)
+    clear = next((one for one in longest if one >= SOME), 0.0)
     return replace(best, share=clear) if clear else None
+
+
+def most_of_it(samples: Samples, led: Followed) -> Followed | None:
+    """What foretells most of the time nearly to the noise, and not the rest of it.
+
+    There a law may be off, and parameters bend for what it is off by: what is not bent counts.
+
+    Parameters
+    ----------
+    samples
+        By which it is told.
+    led
+        What was led to the end.
+
+    Returns
+    -------
+    Followed or None
+        With the share of the time up to which that is so; None: that is short, or all of it.
+    """
+    at = led if led.strain < FAR or led.about is None else led.about
+    if at.state is None or at.strain >= FAR:
+        return None
+    shares, left = samples.means(at.point, 1.0)
+    share = float(max(shares[left < NEARLY_CLEAR], default=0.0))
+    return replace(at, share=share, about=None) if MOST <= share < 1.0 else None

@@ -10,7 +10,7 @@ from analysis.engine.all_samples import (
     farthest_first,
     tells_more,
 )
-from analysis.engine.clear_part import MOST, clear_part
+from analysis.engine.clear_part import clear_part
 from analysis.engine.cycles import valley
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
@@ -112,6 +112,9 @@ class FollowedSearch(ToldLeader):
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead_guess(one)
+        if not (seen or self._near) and self.foretells_most is not None:
+            # What there is beside it is asked of that part.
+            return
         if guessed and not self._near:
             self._lead_next(others, lambda led: not self._is_strained(led))
             self._lead_alike(others)
@@ -319,9 +322,8 @@ class FollowedSearch(ToldLeader):
 
     @property
     def foretells_most(self) -> Followed | None:
-        """The same, where that is most of the time: lines need not be asked."""
-        found = self.foretells
-        return None if found is None or found.share < MOST else found
+        """Most of the time, where something foretells that and nothing comes to the end."""
+        return None if self.arrived and not self.is_poor else self._most_of_it
 
     def _lead_elsewhere(self) -> bool:
         """Lead the best over a ridge; or from elsewhere, where it leaves what nothing explains."""

@@ -14,6 +14,7 @@ from analysis.engine.all_samples import (
     shown_the_way,
 )
 from analysis.engine.array import Array
+from analysis.engine.clear_part import most_of_it
 from analysis.engine.cycles import tuned
 from analysis.engine.exchange import Exchange
 from analysis.engine.faint import Faint, faint
@@ -97,6 +98,7 @@ class Leader:
         self._everywhere: set[tuple[str, tuple[str, ...]]] = set()
         self._anew: set[tuple[str, ...]] = set()
         self._asked_more = False
+        self._most_of_it: Followed | None = None
         self._asked_whole: set[tuple[str, ...]] = set()
         self._most = EFFORT * min(1.0, RECORDS / len(records_of(self._system)))
 
@@ -162,6 +164,8 @@ class Leader:
         contends = cost_of(found) < cost_of(self._best) + BEHIND
         if found.to_end and contends and not has_several(self._system):
             # Of several recordings each is led over its own ridges.
+            if not self._arrives(found.misfit) and self._most_of_it is None:
+                self._most_of_it = most_of_it(self._samples, found)
             found = tuned(self._system, found)
         self._effort += found.effort
         if farthest_first(found) > farthest_first(self._best):
