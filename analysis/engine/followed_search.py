@@ -112,8 +112,9 @@ class FollowedSearch(ToldLeader):
                 break
             if (not self._near or one.log_score > least) and self._effort < self._most:
                 self._lead_guess(one)
-        if not (seen or self._near) and self.foretells_most is not None:
-            # What there is beside it is asked of that part.
+        asked = seen or self._near or self._enough is not None
+        if not asked and self.foretells_most is not None:
+            # What there is beside that is asked of the part that it foretells.
             return
         if guessed and not self._near:
             self._lead_next(others, lambda led: not self._is_strained(led))
