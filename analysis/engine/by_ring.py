@@ -112,8 +112,10 @@ def by_ring(
         return Found(screened, fitted, faint=True, alone=about if near else None)
     foretold = 1.0 if led.arrived else _foretold(nothing)
     at_once = None if foretold == 1.0 else begins(system, nothing.point, foretold)
-    found = Found((), (), faint=False, led=Led(led, single), foretold=foretold, begins=at_once)
-    return found._replace(foretells=led.foretells_most)
+    return Found(
+        (), (), faint=False, led=Led(led, single), foretold=foretold, begins=at_once,
+        foretells=led.foretells_most,
+    )  # fmt: skip
 
 
 def _promised(
@@ -152,8 +154,7 @@ def _out_of_rest(refiner: Refiner, nothing: Followed, most_causes: int, tell: Pr
     rung = led.fitted() if led.arrived and not led.is_poor else None
     if rung is not None:
         return Found(screened, rung, faint=True)
-    found = Found((), (), faint=False, led=Led(led, single))
-    return found._replace(foretells=led.foretells_most)
+    return Found((), (), faint=False, led=Led(led, single), foretells=led.foretells_most)
 
 
 def _foretold(nothing: Followed) -> float:

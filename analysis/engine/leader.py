@@ -163,9 +163,9 @@ class Leader:
         """Among what was led; what may be the best of a single recording is brought in tune."""
         contends = cost_of(found) < cost_of(self._best) + BEHIND
         if found.to_end and contends and not has_several(self._system):
-            # Of several recordings each is led over its own ridges.
             if not self._arrives(found.misfit) and self._most_of_it is None:
                 self._most_of_it = most_of_it(self._samples, found)
+            # Of several recordings each is led over its own ridges.
             found = tuned(self._system, found)
         self._effort += found.effort
         if farthest_first(found) > farthest_first(self._best):
