@@ -12,6 +12,7 @@ import numpy as np
 from analysis.engine.system import Point
 from model.library.discovery import library
 from model.library.effect import Acts
+from model.library.lanes import LANES
 
 LANES_FROM = 8
 """Fewer simulations than this are faster one by one,"""
@@ -19,9 +20,6 @@ LANES_FROM = 8
 OF_PULLEYS_FROM = 4
 """and fewer than this where laws of pulleys are on: of roots vectors take several in the time of
 one."""
-
-GROUP = 16
-"""As many simulations as there are lanes are done by one process at a time."""
 
 LOOKING = 0.3
 """What it takes to look at a simulation once more, of what it takes to simulate."""
@@ -108,10 +106,10 @@ def _divided(every: Sequence[Alike], among: int) -> list[list[Alike]]:
     if not every:
         return []
     count = sum(one.simulations for one in every)
-    parts = max(-(-count // (GROUP * among)), 1) * among
+    parts = max(-(-count // (LANES * among)), 1) * among
     takes = np.array([one.takes for one in every])
     part = (np.cumsum(takes) - 0.5 * takes) * parts // takes.sum()
-    if np.bincount(part.astype(int)).max() > GROUP:
+    if np.bincount(part.astype(int)).max() > LANES:
         part = np.arange(len(every)) * parts // len(every)
     found = [[every[i] for i in np.flatnonzero(part == number).tolist()] for number in range(parts)]
     return [one for one in found if one]
@@ -121,5 +119,5 @@ def _takes(part: Sequence[Alike]) -> float:
     """How long a process takes for it, in simulations one by one."""
     count = sum(one.simulations for one in part)
     lanes = lanes_from({name for one in part for name in one.effects})
-    full, rest = divmod(count, GROUP)
+    full, rest = divmod(count, LANES)
     return full * lanes + min(rest, lanes) + sum(one.takes - one.simulations for one in part)

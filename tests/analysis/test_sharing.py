@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from analysis.diagnosis.sharing import GROUP, Alike, Share, shares
+from analysis.diagnosis.sharing import Alike, Share, shares
 from analysis.engine.candidate import Setting
 from analysis.engine.system import Point
+from model.library.lanes import LANES
 
 
 def asked(count: int, effect: str | None = None, first: int = 0) -> list[Alike]:
@@ -44,7 +45,7 @@ def test_every_point_is_in_one_share_and_no_share_is_longer_than_lanes(
     for record, one in enumerate(every):
         places = [place for share in found if share.record == record for place in share.points]
         assert sorted(places) == sorted(place for alike in one for place in alike.points)
-    assert all(len(one.points) <= GROUP for one in found)
+    assert all(len(one.points) <= LANES for one in found)
 
 
 def test_what_is_only_looked_at_stays_together() -> None:
