@@ -41,6 +41,9 @@ start them takes seconds."""
 AWAKE_S = 0.5 * IDLE_S
 """Those that had something to do so recently are still there."""
 
+_LOADED: set[str] = set()
+"""Of a copy: the files it was made from."""
+
 
 class Worker(Protocol[Work_contra, Done_co]):
     """What does the work; its copy in another process does the same."""
@@ -145,8 +148,11 @@ def _serve() -> None:
 
 
 def _end_with(asker: int) -> None:
+    """What a killed process could not clear away goes too."""
     while os.getppid() == asker:
         time.sleep(LOOK_S)
+    for path in tuple(_LOADED):
+        Path(path).unlink(missing_ok=True)
     os._exit(1)
 
 
@@ -154,6 +160,7 @@ def _end_with(asker: int) -> None:
 def _worker_at(path: str) -> Worker[Any, Any]:
     with open(path, "rb") as file:
         worker: Worker[Any, Any] = pickle.load(file)
+    _LOADED.add(path)
     # What is loaded by now has its threads: the processes are the parallelism.
     threadpool_limits(1)
     return worker

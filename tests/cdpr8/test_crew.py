@@ -59,25 +59,28 @@ team = Crew(Squarer(0), 2)
 others = set()
 while not others:
     others = {{process for _, process in team.do(range(9))}} - {{os.getpid()}}
-print(others.pop(), flush=True)
+print(others.pop(), team._path, flush=True)
 time.sleep(60.0)
 """
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="asks /proc who is there")
-def test_where_the_process_that_asked_is_killed_its_copies_end() -> None:
+def test_where_the_process_that_asked_is_killed_its_copies_end_and_leave_nothing() -> None:
     root = str(Path(__file__).parents[2])
     with subprocess.Popen(
         [sys.executable, "-c", ASKS.format(root=root)], stdout=subprocess.PIPE, text=True
     ) as asker:
         assert asker.stdout is not None
-        other = int(asker.stdout.readline())
+        number, path = asker.stdout.readline().split()
+        other = int(number)
         os.kill(other, 0)
+        assert Path(path).exists()
         asker.kill()
     until_s = time.monotonic() + 30.0
     while _is_there(other) and time.monotonic() < until_s:
         time.sleep(0.1)
     assert not _is_there(other)
+    assert not Path(path).exists()
 
 
 def _is_there(process: int) -> bool:
