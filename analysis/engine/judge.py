@@ -136,7 +136,7 @@ def judge(
     absent = sum(
         float(w) for one, w in zip(fitted, weights, strict=True) if not one.hypothesis.parts
     )
-    chosen = fitted[int(np.argmax(weights))]
+    chosen = fitted[_likeliest(fitted, weights)]
     if absent > 0.5 or not chosen.hypothesis.parts:
         # Parameters alone follow a ring from which nothing was left out.
         verdict = "unexplained" if lost else "none"
@@ -172,6 +172,15 @@ def judge(
     return Judgement(
         verdict, causes, chosen, tuple(float(w) for w in weights), doubt, shown=bool(shown)
     )
+
+
+def _likeliest(fitted: Sequence[Fitted], weights: Array) -> int:
+    """Which fit is the likeliest of the causes that are, wherever each is and in whatever form."""
+    names = [one.hypothesis.names for one in fitted]
+    whole: dict[tuple[str, ...], float] = defaultdict(float)
+    for key, weight in zip(names, weights, strict=True):
+        whole[key] += float(weight)
+    return max(range(len(fitted)), key=lambda i: (whole[names[i]], weights[i]))
 
 
 def _moved(

@@ -55,6 +55,22 @@ def test_what_comes_to_the_noise_is_named(refiner: Refiner) -> None:
     assert said.causes[0].probability > CERTAIN
 
 
+def test_a_cause_in_one_place_or_another_is_likelier_than_what_is_in_one(
+    refiner: Refiner,
+) -> None:
+    # A step may be the likeliest fit, and damping, of one rate or another, still the likelier.
+    fits = [
+        fitted(refiner, state_of(STEP, 1.0, moment=4.0), -10.0, 1.02),
+        fitted(refiner, state_of(DAMPING, 0.21), -10.4, 1.02),
+        fitted(refiner, state_of(DAMPING, 0.2), -10.3, 1.02),
+        fitted(refiner, None, -100.0, 50.0),
+    ]
+    said = judge(fits, CANDIDATES)
+    assert said.verdict == "ambiguous"
+    assert [one.names for one in said.causes] == [("damping", "step")]
+    assert said.chosen is fits[2]
+
+
 @pytest.mark.parametrize(("numbers", "verdict"), [(2, "parameter"), (6, "ambiguous")])
 def test_a_dozen_coordinates_would_explain_anything(
     refiner: Refiner, numbers: int, verdict: str
