@@ -105,7 +105,7 @@ def _move(
     rig = machine.recordings[0].rig
     chosen = diagnosis.judgement.chosen
     at = diagnosis.calibrated.rotation @ chosen.weighed.nuisance
-    trim_n = machine.trim.moved_n(Point(at, chosen.point.effects), 0)
+    tighter_n = machine.trim.moved_n(Point(at, chosen.point.effects), 0)
     for sigmas, nuisance, meaning in zip(at, machine.nuisances, machine.meanings, strict=True):
         amount = float(sigmas * nuisance.sigma)
         if meaning.record > 0:
@@ -117,15 +117,17 @@ def _move(
         elif meaning.effect in ("pretension", "mass") and not balanced:
             _add(data, meaning, amount)
         elif meaning.parameter == "pretension_offset_n":
-            place = meaning.cable - 1
-            row = rig.cable[place].pretension_n
-            tight_n = row.value + amount + float(trim_n[place])
-            _set(data["cable"][place], "pretension_n", tight_n, row.sigma)
+            tighter_n[meaning.cable - 1] += amount
         elif meaning.effect == "mass":
             mass = rig.platform.mass_kg
             _set(data["platform"], "mass_kg", mass.value * (1.0 + amount), mass.sigma)
         elif meaning.effect == "drive_amplitude":
             _drive(data, diagnosis, meaning, amount)
+    for place, cable in enumerate(rig.cable) if balanced else ():
+        row = cable.pretension_n
+        if row.sigma > 0.0:
+            tight_n = row.value + float(tighter_n[place])
+            _set(data["cable"][place], "pretension_n", tight_n, row.sigma)
 
 
 def _add(data: dict[str, Any], meaning: Meaning, amount: float) -> None:

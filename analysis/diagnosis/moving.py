@@ -95,7 +95,8 @@ class Moving:
                     mine[parameter] = mine.get(parameter, 0.0) + float(moved[0])
                 else:
                     column = np.array(mine.get(parameter, np.zeros(8)))
-                    column[where] += moved
+                    # A cable's pretension may be off in every run, and in this one.
+                    np.add.at(column, where, moved)
                     mine[parameter] = column
         return found
 

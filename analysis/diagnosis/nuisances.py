@@ -1,6 +1,6 @@
 """What is free throughout: the rig file's numbers within their sigma, clocks and zeros."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,32 +122,41 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
             sigma = POSE_ZERO_M if i < 3 else POSE_ZERO_RAD
             unit = "m" if i < 3 else "rad"
             found.append((Nuisance(f"pose zero {i}", sigma, unit), Meaning("pose_zero", axis=i)))
-    # Of several runs each has pretensions of its own; one that is off in all is the candidate's.
-    cause = "pretension" if len(recordings) == 1 else None
+    # What is off in every run of a machine is off once: it is the candidate's. Of several runs each
+    # has a deviation of its own beside it.
+    several = len(recordings) > 1
+    if several:
+        for i, cable in enumerate(rig.cable, start=1):
+            add("pretension", "pretension_offset_n", cable.pretension_n.sigma, "N", i)
     for r, one in enumerate(recordings):
-        known = one.run.start.motion_start_known
-        sigma = START_S if known else UNKNOWN_START_S
-        if one.excitation.amplitude_deg > 0.0:
-            found.append(
-                (
-                    Nuisance(f"start of {one.run.name}", sigma, "s", record=one.run.name),
-                    Meaning("start", record=r),
-                )
-            )
-        for i, cable in enumerate(one.rig.cable, start=1):
-            row = cable.pretension_n
-            if row.sigma > 0.0:
-                found.append(
-                    (Nuisance(f"pretension of {one.run.name}@{i}", row.sigma, "N", cause,
-                              f"pretension_offset_n@{i}" if cause else None,
-                              record=one.run.name),
-                     Meaning("pretension", "pretension_offset_n", i, r))
-                )  # fmt: skip
+        found += _of_run(r, one, None if several else "pretension")
     found.append(
         (Nuisance("trim of the pretensions", TRIMMED, "1"), Meaning("pretension", "trimmed_share"))
     )
     columns = list(zip(*found, strict=True))
     return tuple(columns[0]), tuple(columns[1])
+
+
+def _of_run(
+    number: int, recording: Recording, cause: str | None
+) -> Iterator[tuple[Nuisance, Meaning]]:
+    """When a run starts, and its pretensions; of a single run those are the cause's."""
+    name = recording.run.name
+    known = recording.run.start.motion_start_known
+    sigma = START_S if known else UNKNOWN_START_S
+    if recording.excitation.amplitude_deg > 0.0:
+        yield (
+            Nuisance(f"start of {name}", sigma, "s", record=name),
+            Meaning("start", record=number),
+        )
+    for i, cable in enumerate(recording.rig.cable, start=1):
+        row = cable.pretension_n
+        if row.sigma > 0.0:
+            term = f"pretension_offset_n@{i}" if cause else None
+            yield (
+                Nuisance(f"pretension of {name}@{i}", row.sigma, "N", cause, term, record=name),
+                Meaning("pretension", "pretension_offset_n", i, number),
+            )
 
 
 def inertia_shares(rig: Rig) -> tuple[float, float, float]:

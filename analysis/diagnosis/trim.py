@@ -14,10 +14,13 @@ from numpy.typing import NDArray
 
 from analysis.diagnosis.nuisances import Meaning
 from analysis.engine.system import Nuisance, Point
+from cdpr8 import CABLES
 
 Array = NDArray[np.float64]
 
 TRIM, TIGHT = "trimmed_share", "pretension_offset_n"
+EVERY = -1
+"""For the number of a run: what a nuisance moves in all of them."""
 
 
 class Trim:
@@ -60,17 +63,23 @@ class Trim:
         here, there
             From where, and where to.
         records
-            Numbers of the runs that are asked: pretensions of others stay.
+            Numbers of the runs that are asked: what is off in them alone stays in others.
         """
         found = np.zeros(len(self._sigma))
         farther = (there.nuisance - here.nuisance)[self._share] * self._sigma[self._share]
         if farther.any():
-            for record in records:
-                more_n = float(farther.sum()) * (
-                    self._whole_n(there, record) - self._whole_n(here, record)
-                )
+            more_n = {
+                record: float(farther.sum())
+                * (self._whole_n(there, record) - self._whole_n(here, record))
+                for record in records
+            }
+            in_all_n = np.zeros(CABLES)
+            if EVERY in self._tight:
+                in_all_n = np.mean(list(more_n.values()), axis=0)
+            for record, tighter_n in {EVERY: in_all_n, **more_n}.items():
+                rest_n = tighter_n if record == EVERY else tighter_n - in_all_n
                 for i, cable in self._tight.get(record, ()):
-                    found[i] = -more_n[cable] / self._sigma[i]
+                    found[i] = -rest_n[cable] / self._sigma[i]
         return found
 
     def _whole_n(self, point: Point, record: int) -> Array:

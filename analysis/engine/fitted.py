@@ -1,6 +1,6 @@
 """A fitted hypothesis: where it stands, what it leaves, and how sure its numbers are."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import nan
 
@@ -11,6 +11,9 @@ from analysis.engine.evidence import Problem, Weighed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.state import State
 from analysis.engine.system import Point
+
+Causes = Mapping[str, Mapping[str, float]]
+"""Candidate -> term -> magnitude."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +48,7 @@ class Fitted:
         Squared misfit of a sample, ring and all, on average; not a number where it was not led to
         the ring's phase.
     elsewhere
-        The same causes in other places, that are about as likely: candidate -> term -> magnitude of
-        each, the likeliest first.
+        The same causes in other places, that are about as likely, the likeliest first.
     """
 
     hypothesis: Hypothesis
@@ -63,12 +65,20 @@ class Fitted:
     at_limit: tuple[tuple[str, str], ...]
     state: State
     left: float = nan
-    elsewhere: tuple[Mapping[str, Mapping[str, float]], ...] = ()
+    elsewhere: tuple[Causes, ...] = ()
 
     @property
     def strain(self) -> float:
         """What parameters cost: how far they are from what is known of them, squared, in sigmas."""
         return float(self.point.nuisance @ self.point.nuisance)
+
+    def also_in(self, others: Sequence[Causes]) -> "Fitted":
+        """With other places that are about as likely, each set of places once."""
+        found = list(self.elsewhere)
+        for one in others:
+            if all(_terms(one) != _terms(known) for known in found):
+                found.append(one)
+        return replace(self, elsewhere=tuple(found))
 
     def as_sure(self, spread: Array) -> "Fitted":
         """With other standard deviations of its free numbers, shape (numbers,)."""
@@ -87,6 +97,11 @@ class Fitted:
         """The square of that over its variance, error of form and all, on average."""
         used = self.problem.used
         return float(np.mean(self.remaining[used] ** 2 / self.weighed.variance[used]))
+
+
+def _terms(causes: Causes) -> dict[str, set[str]]:
+    """Those that are on of each cause."""
+    return {name: set(values) for name, values in causes.items()}
 
 
 def sigmas_by_name(

@@ -19,7 +19,7 @@ from analysis.engine.cycles import tuned
 from analysis.engine.exchange import Exchange
 from analysis.engine.faint import Faint, faint
 from analysis.engine.faint_search import kin_beside, others_beside
-from analysis.engine.fitted import Fitted
+from analysis.engine.fitted import Causes, Fitted
 from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.part import has_several, records_of
@@ -92,6 +92,7 @@ class Leader:
         self._exchanged: set[tuple[str, ...]] = set()
         self._waiting: dict[tuple[str, ...], tuple[Faint, list[Exchange]]] = {}
         self._placed: set[tuple[object, ...]] = set()
+        self._elsewhere: dict[tuple[object, ...], Sequence[Causes]] = {}
         self._misplaced: set[tuple[str, ...]] = set()
         self._fewer: list[Followed] = []
         self._needed: dict[tuple[tuple[str, ...], tuple[str, ...]], float] = {}
@@ -122,7 +123,8 @@ class Leader:
         nothing = nothing_again(self._system, self._nothing, first[:RESTARTS])
         if not self._arrives(min(one.misfit for one in (*self._led, nothing))):
             return None
-        return all_samples_say(self._refiner, self._led, nothing, count)
+        said = all_samples_say(self._refiner, self._led, nothing, count)
+        return [one.also_in(self._elsewhere.get(one.hypothesis.key, ())) for one in said]
 
     def _arrives(self, misfit: float) -> bool:
         """Whether so much, squared, of all samples is near enough to the noise."""

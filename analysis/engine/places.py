@@ -5,7 +5,7 @@ stand for those that are left out. At the end what a cause does is given back, a
 itself once more, in any places.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,9 @@ from analysis.engine.candidate import Candidate
 from analysis.engine.exchange import Exchange, without
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import ASKS
+from analysis.engine.fitted import Causes
 from analysis.engine.hypothesis import Part
+from analysis.engine.screen import Screen
 
 
 def is_placed(candidate: Candidate) -> bool:
@@ -39,17 +41,8 @@ def placed_again(
         Variance along each direction, the error of form of what is on included: what it leaves has
         told how large that is.
     """
-    state = found.followed.state
-    base = np.maximum(found.problem.base, noise)
-    found = replace(found, problem=replace(found.problem, base=base))
     promised: list[Exchange] = []
-    for name, part in () if state is None else state.hypothesis.parts.items():
-        if not is_placed(candidates[name]) or (name, 0) not in found.terms:
-            continue
-        # Its shapes stay as they are.
-        asked = replace(candidates[name], shapes=(), form_share=0.0)
-        known = {**candidates, name: asked}
-        screen = without(found, known, name)
+    for name, part, screen in _asked_again(found, candidates, noise):
         itself = screen.with_part(name, Part(part.terms, part.shared))
         other = screen.best_of(name)
         if other is None:
@@ -64,3 +57,47 @@ def placed_again(
         scored = replace(other, hypothesis=other.hypothesis.plus(name, there))
         promised.append(Exchange(other.log_score - itself.log_score, scored))
     return sorted(promised, key=lambda one: -one.ahead)
+
+
+def as_likely_in(
+    found: Faint, candidates: Mapping[str, Candidate], noise: float, behind: float
+) -> list[Causes]:
+    """The causes that are on, one of them in other places that are about as likely.
+
+    Parameters
+    ----------
+    found, candidates, noise
+        As for `placed_again`.
+    behind
+        By how much the score may be lower.
+
+    Returns
+    -------
+    list
+        The likeliest first.
+    """
+    told: list[tuple[float, Causes]] = []
+    for name, part, screen in _asked_again(found, candidates, noise):
+        itself = screen.with_part(name, Part(part.terms, part.shared))
+        for other in screen.several_of(name):
+            less = itself.log_score - other.log_score
+            if other.hypothesis.parts[name].terms != part.terms and less < behind:
+                causes: dict[str, dict[str, float]] = {one: {} for one in other.hypothesis.names}
+                for (one, term), value in other.values.items():
+                    causes[one][term] = value
+                told.append((less, causes))
+    return [causes for _, causes in sorted(told, key=lambda one: one[0])]
+
+
+def _asked_again(
+    found: Faint, candidates: Mapping[str, Candidate], noise: float
+) -> Iterator[tuple[str, Part, Screen]]:
+    """Causes that are on and in places, the part of each, and what is there to explain without."""
+    state = found.followed.state
+    base = np.maximum(found.problem.base, noise)
+    found = replace(found, problem=replace(found.problem, base=base))
+    for name, part in () if state is None else state.hypothesis.parts.items():
+        if is_placed(candidates[name]) and (name, 0) in found.terms:
+            # Its shapes stay as they are.
+            asked = replace(candidates[name], shapes=(), form_share=0.0)
+            yield name, part, without(found, {**candidates, name: asked}, name)

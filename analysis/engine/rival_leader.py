@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from analysis.engine.all_samples import (
+    AS_LIKELY,
     WORTH_IT,
     cost_of,
     farthest_first,
@@ -20,7 +21,7 @@ from analysis.engine.kin import kin_alike, kin_left, lead_from, lead_instead
 from analysis.engine.leader import Leader
 from analysis.engine.moved import freed
 from analysis.engine.part import has_several
-from analysis.engine.places import is_placed, placed_again
+from analysis.engine.places import as_likely_in, is_placed, placed_again
 from analysis.engine.ring_fit import BEHIND, FAINT, follow_ring
 from analysis.engine.state import State
 from analysis.engine.way import HOPELESS
@@ -171,6 +172,10 @@ class RivalLeader(Leader):
             if not told and self.is_poor:
                 # What is left may come of the places, not of the form.
                 told = placed_again(asked, candidates)
+            if not told and not self.is_poor:
+                self._elsewhere[best.state.hypothesis.key] = as_likely_in(
+                    asked, candidates, noise, AS_LIKELY
+                )
             for _, one in told[:1]:
                 state = State.of(one, candidates)
                 self._keep(lead_from(self._system, best, state, nuisances_of(asked, one)))

@@ -8,9 +8,9 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate
+from analysis.engine.choices import Choice, choices
 from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, weigh
-from analysis.engine.hypothesis import LOG_COST, Hypothesis, Part, part_log_prior
-from analysis.engine.solve import bounded
+from analysis.engine.hypothesis import Hypothesis, Part, part_log_prior
 from analysis.engine.variance import form_variance
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ LOOSE_FORM = 1.5
 """To first order a law is less certain than simulated: its error of form, times this."""
 
 
-QUICK = (1.0,)
-"""Of choices of terms, only this size of the error of form is weighed."""
+SEVERAL, QUICK = 5, (1.0,)
+"""So many choices of terms are weighed, first with this size of the error of form alone."""
 
 
 @dataclass(frozen=True)
@@ -99,14 +99,25 @@ class Screen:
         return self._score(self.on, {}, ())
 
     def best_of(self, name: str) -> Scored | None:
-        """The best choice of terms and shapes of one more candidate; None: none helps.
+        """The best choice of terms and shapes of one more candidate; None: none helps."""
+        several = self.several_of(name)
+        if not several:
+            return None
+        # The quick score has but one size of the error of form, and that is for those that do
+        # little, however little of it they explain: what explains most for its numbers is weighed
+        # in full as well.
+        first, best = several[0], max(several, key=lambda one: one.log_score)
+        alike = {(one.hypothesis.key, one.looked[name]): one for one in (best, first)}
+        whole = (self._score(one.hypothesis, one.looked, (name,)) for one in alike.values())
+        return max(whole, key=lambda one: one.log_score)
 
-        Terms are added one by one, the best first, each with its own value or all with one, as
-        long as the evidence grows; sets that belong together are tried as wholes.
+    def several_of(self, name: str) -> list[Scored]:
+        """Choices of terms and shapes of one more candidate that are among the best.
+
+        In the order of what they explain for their numbers, with what is on as it is; their scores
+        are quick ones, with what may move.
         """
         candidate = self.candidates[name]
-        best: Scored | None = None
-        variant = 0
         found: list[tuple[float, int, tuple[str, ...], bool]] = []
         for v, shapes in self._looks(candidate):
             for terms, shared, gain in self._choices(candidate, self.terms[name, v]):
@@ -115,27 +126,17 @@ class Screen:
                 found.append((0.5 * gain + prior, v, terms, shared))
         # The quick score has the variance of what is on only; the best few are weighed in full.
         found.sort(key=lambda one: -one[0])
-        seen = set()
+        chosen: dict[tuple[tuple[str, ...], bool], int] = {}
         for _, v, terms, shared in found:
-            if (terms, shared) in seen:
-                continue
-            seen.add((terms, shared))
-            if len(seen) > 5:
-                break
-            part = Part(terms, shared, _shapes(candidate, v))
-            scored = self._score(self.on.plus(name, part), {name: v}, (name,), QUICK)
-            if best is None or scored.log_score > best.log_score:
-                best, variant = scored, v
-        if best is None:
-            return None
-        # One size of the error of form alone is for those that do little, however little of it they
-        # explain: what explains most for its numbers is weighed in full as well.
-        _, v, terms, shared = found[0]
-        most = self.on.plus(name, Part(terms, shared, _shapes(candidate, v)))
-        whole = self._score(best.hypothesis, {name: variant}, (name,))
-        if most.key == best.hypothesis.key and v == variant:
-            return whole
-        return max(whole, self._score(most, {name: v}, (name,)), key=lambda one: one.log_score)
+            if len(chosen) < SEVERAL:
+                chosen.setdefault((terms, shared), v)
+        return [
+            self._score(
+                self.on.plus(name, Part(terms, shared, _shapes(candidate, v))),
+                {name: v}, (name,), QUICK,
+            )
+            for (terms, shared), v in chosen.items()
+        ]  # fmt: skip
 
     def with_terms(self, name: str, terms: tuple[str, ...]) -> Scored:
         """One more candidate with given terms, each its own value, at its first variant."""
@@ -156,10 +157,8 @@ class Screen:
             yield v, _shapes(candidate, v)
             v += 1
 
-    def _choices(
-        self, candidate: Candidate, columns: Array
-    ) -> Iterator[tuple[tuple[str, ...], bool, float]]:
-        """Sets of terms worth weighing, with what they would win in chi2."""
+    def _choices(self, candidate: Candidate, columns: Array) -> Iterator[Choice]:
+        """Sets of its terms worth weighing."""
         frame, own = self._quick_frame(candidate)
         stacked = np.hstack([own, columns])
         matrix, right = frame.normal(stacked)
@@ -170,46 +169,7 @@ class Screen:
             cross = matrix[fixed:, :fixed] @ inner
             right = right[fixed:] - cross @ right[:fixed]
             matrix = matrix[fixed:, fixed:] - cross @ matrix[:fixed, fixed:]
-        names = tuple(term.name for term in candidate.terms)
-        bounds = {name: limits(candidate, (name,)) for name in names}
-        limit = candidate.chosen_terms or len(names)
-
-        def gain(groups: Sequence[Sequence[str]]) -> float:
-            adds = np.array([[name in group for name in names] for group in groups], dtype=float)
-            low = np.array([max(bounds[one][0] for one in group) for group in groups])
-            high = np.array([min(bounds[one][1] for one in group) for group in groups])
-            m, b = adds @ matrix @ adds.T, adds @ right
-            e = bounded(m, b, low, high)
-            return float(2.0 * b @ e - e @ m @ e)
-
-        def ways(terms: Sequence[str]) -> Iterator[tuple[tuple[str, ...], bool, float]]:
-            whole = tuple(one for one in names if one in terms)
-            alike, each = candidate.groups(whole, True), candidate.groups(whole, False)
-            if candidate.shareable and len(alike) < min(len(each), limit + 1):
-                yield whole, True, gain(alike)
-            if len(each) <= limit:
-                yield whole, False, gain(each)
-
-        if candidate.together or len(names) == 1:
-            yield from ways(names)
-            return
-        # One by one, the best next, each with its own value.
-        chosen: list[str] = []
-        current = 0.0
-        while len(chosen) < limit:
-            gains = {
-                one: gain([(k,) for k in (*chosen, one)]) for one in names if one not in chosen
-            }
-            if not gains:
-                break
-            best = max(gains, key=lambda one: gains[one])
-            if gains[best] - current < 2.0 * LOG_COST and chosen:
-                break
-            chosen.append(best)
-            current = gains[best]
-            yield from ways(chosen)
-        for combination in candidate.combinations:
-            yield from ways(combination)
+        return choices(candidate, matrix, right)
 
     def _quick_frame(self, candidate: Candidate) -> tuple[Frame, Array]:
         share = candidate.form_share * LOOSE_FORM
