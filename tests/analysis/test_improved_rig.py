@@ -1,5 +1,6 @@
 """`improved.toml`: numbers where the fit has them, whatever it has made of them."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -19,7 +20,11 @@ PRETENSIONS = tuple(Meaning("pretension", "pretension_offset_n", cable) for cabl
 
 
 def moved(
-    tmp_path: Path, offsets_n: list[float], mass_share: float, stiffness_share: float = 0.0
+    tmp_path: Path,
+    offsets_n: list[float],
+    mass_share: float,
+    stiffness_share: float = 0.0,
+    of: tuple[Meaning, ...] = PRETENSIONS,
 ) -> Path:
     """An improved rig file of pretensions, a mass and cable 8's stiffness that a fit has moved."""
     text = packaged_rig_path().read_text(encoding="utf-8")
@@ -27,7 +32,7 @@ def moved(
     run = SimpleNamespace(folder=tmp_path, name="run01")
     rig = load_rig(tmp_path / "rig.toml")
     stiffness = Meaning("stiffness", "stiffness_share", 8)
-    meanings = (*PRETENSIONS, Meaning("mass", "mass_share"), stiffness)
+    meanings = (*of, Meaning("mass", "mass_share"), stiffness)
     nuisances = [Nuisance(one.effect, 1.0, "") for one in meanings]
     machine: Any = SimpleNamespace(
         recordings=[SimpleNamespace(run=run, rig=rig)],
@@ -51,6 +56,15 @@ def test_pretensions_that_carry_the_weight_are_numbers_of_the_rig_file(tmp_path:
         before.cable[0].pretension_n.value + 1e-3
     )
     assert not rig.physics
+
+
+def test_what_is_off_in_all_runs_and_in_the_first_is_in_its_rig_file(tmp_path: Path) -> None:
+    every = tuple(replace(one, record=-1) for one in PRETENSIONS)
+    runs = tuple(replace(one, record=run) for run in (0, 1) for one in PRETENSIONS)
+    rig = load_rig(moved(tmp_path, [1e-3] * 8 + [2e-3] * 8 + [5e-3] * 8, 0.0, of=(*every, *runs)))
+    assert rig.cable[0].pretension_n.value == pytest.approx(
+        load_rig().cable[0].pretension_n.value + 3e-3
+    )
 
 
 def test_pretensions_that_carry_no_weight_are_what_was_simulated(tmp_path: Path) -> None:

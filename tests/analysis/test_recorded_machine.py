@@ -12,7 +12,7 @@ from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import seen_by
 from analysis.engine.array import Array
-from analysis.engine.system import Point, Ringing
+from analysis.engine.system import Point, Ringing, own_nuisances
 from analysis.engine.until import Until
 from cdpr8.rigfile import Excitation
 from model.simulator import run
@@ -166,15 +166,32 @@ def test_however_high_a_machine_rings_that_is_let_go_its_rows_are_close_enough(
         assert missed.max() < 0.05, bundle.names
 
 
-def test_pretensions_of_a_run_that_is_not_asked_for_stay(recorded: Recording) -> None:
+def test_what_is_off_in_every_run_is_off_once(recorded: Recording) -> None:
+    other = replace(recorded, run=replace(recorded.run, folder=Path("other")))
+    machine = RecordedMachine([recorded, other], NAMES, workers=1)
+    tight = [one.record for one in machine.meanings if one.parameter == "pretension_offset_n"]
+    assert sorted(set(tight)) == [-1, 0, 1]
+    own = own_nuisances(machine.nuisances)
+    assert {term for name, term in own if name == "pretension"} == {
+        f"pretension_offset_n@{cable}" for cable in range(1, 9)
+    }
+    nuisance = np.zeros(len(machine.nuisances))
+    for i, one in enumerate(machine.meanings):
+        if one.parameter == "pretension_offset_n" and one.cable == 3:
+            nuisance[i] = {-1: 2.0, 0: 1.0, 1: -1.0}[one.record]
+    sigma = recorded.rig.cable[2].pretension_n.sigma
+    for record, sigmas in ((0, 3.0), (1, 1.0)):
+        offset = machine.job(Point(nuisance), record).task.effects[0].values["pretension_offset_n"]
+        assert offset[2] == pytest.approx(sigmas * sigma)
+
+
+def test_a_trim_of_several_runs_bends_what_is_off_in_all_of_them(recorded: Recording) -> None:
     other = replace(recorded, run=replace(recorded.run, folder=Path("other")))
     machine = RecordedMachine([recorded, other], NAMES, workers=1)
     here, there = (Point(np.full(len(machine.nuisances), size)) for size in (0.2, 0.7))
     both = machine.bend(here, there)
-    asked = machine.bend(here, replace(there, records=(recorded.run.name,)))
-    tight = [one.record for one in machine.meanings if one.parameter == "pretension_offset_n"]
-    assert sorted(set(tight)) == [0, 1]
     of = np.array([one.record for one in machine.meanings])
-    assert asked[of == 0] == pytest.approx(both[of == 0])
-    assert np.abs(both[of == 1]).max() > 0.01
-    assert np.array_equal(asked[of == 1], np.zeros(np.count_nonzero(of == 1)))
+    assert np.abs(both[of == -1]).max() > 0.01
+    assert both[of >= 0] == pytest.approx(0.0, abs=1e-9)
+    asked = machine.bend(here, replace(there, records=(recorded.run.name,)))
+    assert asked == pytest.approx(both)

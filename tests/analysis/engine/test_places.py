@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine.all_samples import all_samples_say
+from analysis.engine.all_samples import AS_LIKELY, all_samples_say
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.candidate import Candidate, Shape, Term
@@ -16,7 +16,7 @@ from analysis.engine.faint_search import ASKS, nuisances_of
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.look import look
-from analysis.engine.places import is_placed, placed_again
+from analysis.engine.places import as_likely_in, is_placed, placed_again
 from analysis.engine.refine import Refiner
 from analysis.engine.state import State
 from analysis.engine.system import Nuisance, Point, Prediction
@@ -63,6 +63,15 @@ class _Places:
         return np.asarray(seen)
 
 
+class _Loose(_Places):
+    """The parameter is hardly known."""
+
+    nuisances = (Nuisance("b", 200.0, "V"),)
+
+    def _seen(self, point: Point) -> Array:
+        return super()._seen(replace(point, nuisance=100.0 * point.nuisance))
+
+
 def led(nuisance: float, places: str, *, shared: bool = True) -> Followed:
     """Led to the end, the law in these places."""
     terms = tuple(f"size@{one}" for one in places)
@@ -96,6 +105,17 @@ def test_what_an_error_of_form_may_be_is_no_other_place() -> None:
 def test_where_all_is_in_place_nothing_is_promised() -> None:
     system = _Places()
     assert placed_again(faint(system, led(0.0, "ab"), [LAW]), KNOWN) == []
+
+
+def test_other_places_that_are_as_likely_are_told() -> None:
+    # The parameter does what the law does in b: whether it is there as well, nothing tells.
+    system = _Places()
+    found = faint(system, led(0.0, "ab"), [LAW])
+    assert as_likely_in(found, KNOWN, 1.0, AS_LIKELY) == []
+    loose = faint(_Loose(), led(0.0, "ab"), [LAW])
+    (other,) = as_likely_in(loose, KNOWN, 1.0, AS_LIKELY)
+    assert set(other["law"]) == {"size@a"}
+    assert other["law"]["size@a"] == pytest.approx(THERE, rel=0.02)
 
 
 def test_what_needs_fewer_numbers_is_asked_for_however_little_it_promises() -> None:
