@@ -31,6 +31,11 @@ APART = 0.75
 STANDS_OUT = 8.0
 """A ring stands out by so many standard deviations of what noise makes of a line."""
 
+OF_IT = 0.05
+"""And is at least this share of what is left beyond noise: of a tone out of tune it is a half, or a
+quarter where two are. A law that is not exact leaves many lines that stand out, and each of them
+takes a thousand simulations to bring a hundredth of what is left."""
+
 SAMPLED = 2.5
 """Samples a period, at least, by which a ring is seen."""
 
@@ -103,7 +108,7 @@ def _rings(
         if len(hertz):
             loud = _loudness(samples, residual, hertz)
             best = int(np.argmax(loud))
-            if loud[best] > STANDS_OUT:
+            if loud[best] > STANDS_OUT and _share(samples, residual, float(hertz[best])) > OF_IT:
                 found.append(_Ring(j, float(hertz[best]), float(loud[best])))
     return sorted(found, key=lambda one: -one.loud)
 
@@ -120,6 +125,15 @@ def _loudness(samples: Samples, residual: Array, hertz: Array) -> Array:
         channels += part.shape[1]
     # Of noise, each channel's power has mean and standard deviation 1.
     return np.asarray((power - channels) / np.sqrt(max(channels, 1)))
+
+
+def _share(samples: Samples, residual: Array, hertz: float) -> float:
+    """Which share of what is left beyond noise a line is."""
+    of_line = 0.0
+    for t_s, part in samples.parts(residual):
+        turns = np.exp(-2j * np.pi * hertz * t_s)
+        of_line += 2.0 * float((np.abs(turns @ part) ** 2).sum()) / len(t_s)
+    return of_line / max(float(residual @ residual) - len(residual), 1.0)
 
 
 def _tuned(system: Ringing, led: Followed, spread: Array, ring: _Ring, length_s: float) -> Followed:

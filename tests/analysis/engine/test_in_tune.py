@@ -1,6 +1,7 @@
 """A faint tone that was led out of tune by many turns, beside one that was not."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,17 @@ def test_what_is_in_tune_stays_as_it_is() -> None:
     system = Duet()
     led = follow_ring(system, TRUTH, everything=True, near=True)
     assert tuned(system, led) is led
+
+
+def test_beside_a_law_that_is_not_exact_no_ring_is_followed() -> None:
+    # What is left of the law holds lines everywhere, near the tone as well.
+    system = Duet()
+    led = out_of_tune(system)
+    assert list(in_tune(system, led, Known.priors(led)))
+    bundle = system.bundles[0]
+    sweep = 4.2 * NOISE * np.sin(2.0 * np.pi * (1.0 + 0.5 * T_S) * T_S)
+    system.bundles = (replace(bundle, value=bundle.value + sweep[:, None]),)
+    assert not list(in_tune(system, led, Known.priors(led)))
 
 
 def test_what_is_in_tune_leaves_no_ring_to_follow() -> None:
