@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate
-from analysis.engine.choices import Choice, choices
+from analysis.engine.choices import Choice, choices, limits_of
 from analysis.engine.evidence import FORM_SIZES, Frame, Problem, Weighed, weigh
 from analysis.engine.hypothesis import Hypothesis, Part, part_log_prior
 from analysis.engine.variance import form_variance
@@ -279,8 +279,7 @@ def magnitude(candidate: Candidate, group: tuple[str, ...], factor: float) -> fl
 
 
 def limits(candidate: Candidate, group: tuple[str, ...]) -> tuple[float, float]:
-    """Bounds of a group's value; what is there or not has but one."""
-    chosen = [term for term in candidate.terms if term.name in group]
-    if candidate.fixed:
-        return chosen[0].step, chosen[0].step
-    return max(term.low for term in chosen), min(term.high for term in chosen)
+    """Bounds of a group's value."""
+    on = np.array([term.name in group for term in candidate.terms])
+    lows, highs = limits_of(candidate)
+    return float(lows[on].max()), float(highs[on].min())
