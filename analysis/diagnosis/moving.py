@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnosis.nuisances import Meaning
+from analysis.diagnosis.nuisances import EVERY, Meaning
 from analysis.engine.system import Nuisance
 from model import ActiveEffect
 from model.library.discovery import library
@@ -59,11 +59,11 @@ class Moving:
         self._sigmas = np.array([one.sigma for one in nuisances])
         pairs: dict[tuple[str, str], list[tuple[int, int]]] = {}
         for i, one in enumerate(meanings):
-            if one.record in (-1, record):
+            if one.record in (EVERY, record):
                 where = one.axis if one.effect == "pose_zero" else one.cable - 1
                 pairs.setdefault((one.effect, one.parameter), []).append((i, where))
         self._places = {key: np.array(found).T for key, found in pairs.items()}
-        inside = [one.record in (-1, record) and _acts_inside(one) for one in meanings]
+        inside = [one.record in (EVERY, record) and _acts_inside(one) for one in meanings]
         self.inside = np.flatnonzero(inside)
         """Those that change what is simulated."""
 

@@ -49,6 +49,9 @@ leave it at rest where the rig file has it, 1, or those of the rig file, 0."""
 POSE_ZERO_M, POSE_ZERO_RAD = 3e-4, 1e-3
 """How well the plate's place on the platform is known."""
 
+EVERY = -1
+"""For the number of a run: all of them."""
+
 
 @dataclass(frozen=True)
 class Meaning:
@@ -62,7 +65,7 @@ class Meaning:
     cable
         1 to 8, or 0.
     record
-        The run it belongs to; -1: all.
+        The run it belongs to, or `EVERY`.
     axis
         For "pose_zero".
     """
@@ -70,7 +73,7 @@ class Meaning:
     effect: str
     parameter: str = ""
     cable: int = 0
-    record: int = -1
+    record: int = EVERY
     axis: int = 0
 
 

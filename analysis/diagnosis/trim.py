@@ -12,15 +12,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnosis.nuisances import Meaning
+from analysis.diagnosis.nuisances import EVERY, Meaning
 from analysis.engine.system import Nuisance, Point
 from cdpr8 import CABLES
 
 Array = NDArray[np.float64]
 
 TRIM, TIGHT = "trimmed_share", "pretension_offset_n"
-EVERY = -1
-"""For the number of a run: what a nuisance moves in all of them."""
 
 
 class Trim:

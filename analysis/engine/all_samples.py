@@ -8,7 +8,7 @@ import numpy as np
 from analysis.engine.array import Array
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
 from analysis.engine.faint import FORMS, UNEXPLAINED, inexact
-from analysis.engine.fitted import Fitted
+from analysis.engine.fitted import Causes, Fitted, by_cause
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
 from analysis.engine.judge import NOISE
@@ -216,17 +216,14 @@ def all_samples_say(
     return sorted(fitted, key=lambda one: -one.log_score)
 
 
-def _places(others: Sequence[State], state: State) -> tuple[dict[str, dict[str, float]], ...]:
+def _places(others: Sequence[State], state: State) -> tuple[Causes, ...]:
     """The causes of states that have other places on than one has, each set of places once."""
     seen = {state.hypothesis.key}
     found = []
     for one in others:
         if one.hypothesis.key not in seen:
             seen.add(one.hypothesis.key)
-            causes: dict[str, dict[str, float]] = {name: {} for name in one.hypothesis.names}
-            for (name, term), value in one.term_values().items():
-                causes[name][term] = value
-            found.append(causes)
+            found.append(by_cause(one.hypothesis.names, one.term_values()))
     return tuple(found)
 
 

@@ -99,6 +99,22 @@ class Fitted:
         return float(np.mean(self.remaining[used] ** 2 / self.weighed.variance[used]))
 
 
+def by_cause(names: Sequence[str], values: Mapping[tuple[str, str], float]) -> Causes:
+    """Causes and what is on of each.
+
+    Parameters
+    ----------
+    names
+        Of the causes.
+    values
+        (candidate, term) -> magnitude, of these.
+    """
+    found: dict[str, dict[str, float]] = {name: {} for name in names}
+    for (name, term), value in values.items():
+        found[name][term] = value
+    return found
+
+
 def _terms(causes: Causes) -> dict[str, set[str]]:
     """Those that are on of each cause."""
     return {name: set(values) for name, values in causes.items()}

@@ -14,7 +14,7 @@ from analysis.engine.candidate import Candidate
 from analysis.engine.exchange import Exchange, without
 from analysis.engine.faint import Faint
 from analysis.engine.faint_search import ASKS
-from analysis.engine.fitted import Causes
+from analysis.engine.fitted import Causes, by_cause
 from analysis.engine.hypothesis import Part
 from analysis.engine.screen import Screen
 
@@ -82,10 +82,7 @@ def as_likely_in(
         for other in screen.several_of(name):
             less = itself.log_score - other.log_score
             if other.hypothesis.parts[name].terms != part.terms and less < behind:
-                causes: dict[str, dict[str, float]] = {one: {} for one in other.hypothesis.names}
-                for (one, term), value in other.values.items():
-                    causes[one][term] = value
-                told.append((less, causes))
+                told.append((less, by_cause(other.hypothesis.names, other.values)))
     return [causes for _, causes in sorted(told, key=lambda one: one[0])]
 
 
