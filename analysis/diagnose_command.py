@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from analysis.recordings import load_recordings
 from cdpr8.crew import USUAL
-from cdpr8.terminal import note, progress, say, say_json, say_table, stages
+from cdpr8.terminal import note, say, say_json, say_table, stages
 
 if TYPE_CHECKING:
     from analysis.diagnosis.recording import Recording
@@ -69,7 +70,7 @@ def diagnose(
     chosen = _effects(effects)
     machine = load_rig(rig) if rig is not None else None
     folders = [find_run(name) for name in runs]
-    recordings = _recordings(folders, machine, workers)
+    recordings = load_recordings(folders, machine, workers)
     compile_solver(note)
     folder = results_folder(recordings[0].run.folder)
     result = run_diagnosis(
@@ -111,21 +112,6 @@ def _effects(asked: str | None) -> list[str] | None:
             remedy="`model effects` lists them",
         )
     return names
-
-
-def _recordings(folders: Sequence[Path], machine: object, workers: int) -> "tuple[Recording, ...]":
-    """Load, and track where there are no poses yet."""
-    from analysis.diagnosis.prepare import prepare
-    from cdpr8.rigfile import Rig
-    from cdpr8.runfolder import load_run
-
-    runs = [load_run(folder) for folder in folders]
-    untracked = [run for run in runs if run.pose is None and run.video is not None]
-    for run in untracked:
-        note(f"{run.name} has no pose.csv: tracking its video")
-    with progress("tracking", sum(len(run.frames) for run in untracked) or None) as step:
-        known = machine if isinstance(machine, Rig) else None
-        return prepare(folders, rig=known, step=step, workers=workers)
 
 
 def run_diagnosis(

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from cdpr8.terminal import note, progress, say, say_json, say_table
+from analysis.recordings import load_recordings
+from cdpr8.terminal import note, say, say_json, say_table
 
 
 def stiffness(
@@ -27,21 +28,13 @@ def stiffness(
 
     Example: analysis stiffness run01
     """
-    from analysis.diagnosis.prepare import prepare
     from analysis.stiffness import stiffnesses
     from analysis.stiffness_file import FILE, as_dictionary, table, write_rig
     from cdpr8.rigfile import load_rig
-    from cdpr8.runfolder import find_run, load_run, results_folder
+    from cdpr8.runfolder import find_run, results_folder
 
     chosen = load_rig(rig) if rig is not None else None
-    folders = [find_run(name) for name in runs]
-    untracked = [
-        one for one in map(load_run, folders) if one.pose is None and one.video is not None
-    ]
-    for one in untracked:
-        note(f"{one.name} has no pose.csv: tracking its video")
-    with progress("tracking", sum(len(one.frames) for one in untracked) or None) as step:
-        recordings = prepare(folders, rig=chosen, step=step)
+    recordings = load_recordings([find_run(name) for name in runs], chosen)
     found = stiffnesses(recordings)
     results = results_folder(recordings[0].run.folder)
     own = rig if rig is not None else recordings[0].run.folder / "rig.toml"

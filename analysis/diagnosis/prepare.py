@@ -43,24 +43,40 @@ def prepare(
     DataError
         A run has nothing usable, or two have the same name.
     """
-    runs = [load_run(folder) for folder in folders]
-    names = [run.name for run in runs]
-    if len(set(names)) < len(names):
-        runs = [replace(run, folder=run.folder) for run in runs]
-        doubled = sorted({name for name in names if names.count(name) > 1})
-        if len({run.folder.resolve() for run in runs}) < len(runs):
-            raise DataError(
-                f"the run {', '.join(doubled)} is named twice",
-                allowed="each run once",
-                remedy="more runs of the machine, not more of one run, make a campaign",
-            )
-        raise DataError(
-            f"two runs are called {', '.join(doubled)}",
-            allowed="folders of different names",
-            remedy="rename one: what is found is told by the run's name",
-        )
+    runs = runs_of_one_machine(folders)
     with one_thread_each():
         return tuple(_prepare(run, rig, step, workers) for run in runs)
+
+
+def runs_of_one_machine(folders: Sequence[Path]) -> list[Run]:
+    """Load runs of which each has a name of its own.
+
+    Parameters
+    ----------
+    folders
+        Run folders.
+
+    Raises
+    ------
+    DataError
+        A run has nothing usable, or two have the same name.
+    """
+    runs = [load_run(folder) for folder in folders]
+    names = [run.name for run in runs]
+    doubled = sorted({name for name in names if names.count(name) > 1})
+    if not doubled:
+        return runs
+    if len({run.folder.resolve() for run in runs}) < len(runs):
+        raise DataError(
+            f"the run {', '.join(doubled)} is named twice",
+            allowed="each run once",
+            remedy="more runs of the machine, not more of one run, make a campaign",
+        )
+    raise DataError(
+        f"two runs are called {', '.join(doubled)}",
+        allowed="folders of different names",
+        remedy="rename one: what is found is told by the run's name",
+    )
 
 
 def _prepare(run: Run, rig: Rig | None, step: Callable[[], None] | None, workers: int) -> Recording:
