@@ -171,6 +171,13 @@ def compare(
     if not cables:
         raise DataError("no cable has usable tension samples", where=str(run.folder))
     tensions = {cable: measured_tension(run, cable) for cable in cables}
+    restless = [one.name for one in (angle, *tensions.values()) if not one.noise_known]
+    if restless:
+        warnings.append(
+            "no rest was recorded, too little of it, or it is not known when it ended "
+            f"({', '.join(restless)}): values are about the middle of the motion, and the noise "
+            "is an estimate"
+        )
     shift = 0.0
     if not run.start.motion_start_known:
         largest = max(tensions, key=lambda c: float(tensions[c].value.std()))
@@ -274,11 +281,5 @@ def _warnings(run: Run, rig: Rig | None) -> list[str]:
         found.append(
             f"the stiffness of cable {', '.join(same)} was fitted to this same run: its tensions "
             "agree by construction"
-        )
-    excitation = run.start.excitation
-    if excitation.rest_s == 0.0 or not run.start.motion_start_known:
-        found.append(
-            "no rest was recorded, or it is not known when it ended: values are about the middle "
-            "of the motion, and the noise is an estimate"
         )
     return found

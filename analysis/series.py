@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.noise_floor import noise_floor
 from cdpr8 import CABLES
 from cdpr8.errors import DataError
 from cdpr8.runfolder import FrameFlag, Run
@@ -38,7 +39,7 @@ class Series:
     noise
         Standard deviation of one sample at rest.
     noise_known
-        False where the run has no rest and `noise` is an upper bound taken from the motion.
+        False where the run has no rest before its motion and `noise` is an estimate from that.
     """
 
     name: str
@@ -102,12 +103,6 @@ def measured_cables(run: Run) -> tuple[int, ...]:
     return tuple(c for c in range(1, CABLES + 1) if len(run.cable_tension(c)) >= MIN_SAMPLES)
 
 
-def about_bend(value: Array) -> float:
-    """Standard deviation of samples about their neighbours' mean, outliers aside."""
-    bend = value[1:-1] - (value[:-2] + value[2:]) / 2.0
-    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(1.5))
-
-
 def _series(
     run: Run, name: str, unit: str, times: "pd.Series[float]", values: "pd.Series[float]", of: str
 ) -> Series:
@@ -125,7 +120,7 @@ def _series(
     if np.count_nonzero(at_rest) >= MIN_REST_SAMPLES:
         rest = value[at_rest]
         return Series(name, unit, t_s, value - rest.mean(), float(rest.std(ddof=1)), True)
-    # Without rest the middle of the motion stands in for it, and what one sample differs from
-    # its neighbours' straight line bounds the noise from above.
+    # Without rest the middle of the motion stands in for it.
     middle = (value.max() + value.min()) / 2.0
-    return Series(name, unit, t_s, value - middle, about_bend(value), False)
+    noise = noise_floor(t_s, value, excitation)
+    return Series(name, unit, t_s, value - middle, noise, False)

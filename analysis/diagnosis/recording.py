@@ -18,7 +18,8 @@ from analysis.diagnosis.noise import (
 )
 from analysis.engine.bundle import Bundle, Segment
 from analysis.engine.tones import RESONANT, resonant
-from analysis.series import about_bend, measured_cables
+from analysis.noise_floor import noise_floor
+from analysis.series import measured_cables
 from cdpr8.errors import DataError
 from cdpr8.rigfile import Rig
 from cdpr8.rigfile.excitation import Excitation
@@ -44,8 +45,8 @@ LINES_HZ = 25.0
 LEAST_FRAMES, LEAST_REST_FRAMES = 20, 10
 """Poses that are of use, and those at rest that a noise level needs."""
 
-BENDS = 4
-"""Neighbours' means tell as much of the noise as so many times fewer samples at rest."""
+OF_LINES = 4
+"""A median of lines tells as much of the noise as so many times fewer samples at rest."""
 
 LEAST_NOISE_N = 2e-4
 """Below this the resolution of the electronics is the noise."""
@@ -248,7 +249,8 @@ def _tension(
     if run.start.motion_start_known and np.count_nonzero(rest) >= LEAST_REST:
         sigma, noise_from = about_line(t_s[rest], value[rest]), int(rest.sum())
     else:
-        sigma, noise_from = about_bend(value), len(value) // BENDS
+        sigma = noise_floor(t_s, value, excitation, shift_s)
+        noise_from = len(value) // OF_LINES
         notes.append(f"cable {cable}: no rest to take the noise from; {sigma:.4f} N is an estimate")
     stated = (one.sampling_sigma_s for one in run.start.nodes if one.cable == cable)
     found = Bundle(
@@ -315,7 +317,7 @@ def _pose(
                     "spread is taken"
                 )
     elif not np.isfinite(covariance).all():
-        spread = np.array([about_bend(column) for column in value.T])
+        spread = np.array([noise_floor(t_s, one, excitation, shift_s) for one in value.T])
         covariance = np.diag(spread**2)
         notes.append("pose.csv states no sigma and there was no rest: the noise is an estimate")
     floor = np.array([LEAST_NOISE_M] * 3 + [LEAST_NOISE_RAD] * 3)

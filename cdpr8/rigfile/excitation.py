@@ -21,9 +21,16 @@ class Excitation(Section):
     """
 
     axis: Literal["roll", "pitch", "yaw"] = "pitch"
-    amplitude_deg: float = Field(default=2.0, ge=0.0, le=30.0)
+    amplitude_deg: float = Field(
+        default=2.0, ge=0.0, le=30.0, description="0: nothing is commanded (rest, a free decay)"
+    )
     frequency_hz: float = Field(default=2.06, gt=0.0, le=50.0)
-    rest_s: float = Field(default=1.0, ge=0.0, description="before the motion, and after it")
+    rest_s: float = Field(
+        default=1.0,
+        ge=0.0,
+        description="before the motion, and after it; where that before it was another, "
+        "motion_start_s says so",
+    )
     motion_start_s: float | None = Field(default=None, ge=0.0, description="default: rest_s")
     motion_s: float = Field(default=8.0, gt=0.0, description="length of the motion with ramps")
     ramp_s: float = Field(default=0.5, ge=0.0)
@@ -37,7 +44,13 @@ class Excitation(Section):
         description="w falls over the last ramp_s of motion_s (ramp_within), over another ramp_s "
         "after it (ramp_beyond), or at once at its end (at_once)",
     )
-    drive: Literal["wrench", "winch"] = "wrench"
+    drive: Literal["wrench", "winch"] = Field(
+        default="wrench",
+        description="wrench: the force and moment about the rig file's centre of mass that make "
+        "the rig file's machine follow X*, with elastic cables that do not vibrate; winch: each "
+        "winch pays out what its cable's length changes by on X*. Either is a table of the time: "
+        "nothing corrects it, and the platform rings about X*",
+    )
     platform_offset_m: Vector = Field(
         default=(1e-4, 0.0, 0.0), description="X_p0, at the motion's start"
     )

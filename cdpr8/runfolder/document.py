@@ -155,6 +155,13 @@ from 0 to 1 over `ramp_s` by the law `ramp` and falls by the same law as `ending
 that leaves `ramp` or `ending` out does not state them: `analysis` then finds out from the onset and
 the end of the motion which of these laws it was, and says so. X_p0 and X_w0
 are added to the state at tau = 0.
+
+Winches alone do not make the angle: cables give, and a platform that is paid out 2 deg moves less.
+
+A free decay is a run with `amplitude_deg` 0 and a `platform_offset_m` other than 0: from
+`motion_start_s` on the platform rings about its rest for `motion_s`. Whether it was held there and
+let go, or knocked there, `analysis diagnose` finds out where a law with a memory asks for it
+(`let_go_share` in [effects.md](effects.md)). `analysis compare` needs a motion and refuses it.
 """
 
 

@@ -40,7 +40,8 @@ class Node(Record):
     zero_taken: str = Field(default="never", description="when the zero was taken")
     profile: str | None = Field(
         default=None,
-        description="the dialect, chosen by the identity; unknown: values were asked for as text",
+        description="the dialect, chosen by the identity (AD104, AD101B/AD103 or FIT class; of "
+        "other electronics any name); unknown: values were asked for as text",
     )
     value_bytes: int | None = Field(default=None, description="bytes of one value on the line")
     output_period_s: float | None = Field(

@@ -61,7 +61,11 @@ def _paragraph(effect: Effect) -> str:
     lines.append("")
     if effect.states:
         listed = "; ".join(f"`{one.name}` ({one.unit}): {one.meaning}" for one in effect.states)
-        shared = ", shared by the cables of a post" if effect.states[0].shared else ""
+        shared = (
+            ", shared by the cables of a post (base points in one quadrant of the floor)"
+            if effect.states[0].shared
+            else ""
+        )
         lines.append(f"States of each cable{shared}: {listed}.\n")
     if effect.longest_step_s is not None:
         longest_ms = 1e3 * effect.longest_step_s
