@@ -196,7 +196,7 @@ def _slopes(part: Steady, recording: Recording) -> _Slopes:
     # Differences against the slope itself, not the one freed of attenuation.
     plain = part.slopes(machine.base, machine.anchor)
     changes = [one + value - plain for one in changes]
-    late = float(np.hypot(LATENCY_S, SAMPLE_S))
+    late = float(np.hypot(LATENCY_S, np.hypot(SAMPLE_S, max(recording.offset_s))))
     sides = [part.slopes(machine.base, machine.anchor, late_s=sign * late) for sign in (1.0, -1.0)]
     timing = np.array([(sides[0] - sides[1]) / 2.0, (sides[0] + sides[1]) / 2.0 - plain])
     return _Slopes(value, noise, {"geometry": np.array(changes), "timing": timing})

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.diagnosis.recording import Recording, segments
+from analysis.diagnosis.recording import Recording
+from analysis.diagnosis.segments import segments
 from analysis.engine.bundle import Bundle
 from cdpr8.rigfile import Excitation, Rig, load_rig
 from cdpr8.rigfile.checks import structure_matrix_at_rest
@@ -95,7 +96,7 @@ class Experiment:
         tones = tuple(tones_hz(Machine.from_rig(self.rig)))
         quieter = [replace(one, covariance=one.covariance / self.repeats) for one in like.bundles]
         bundles = tuple(_empty(one, asked, tones) for one in quieter)
-        return Recording(run, asked, 0.0, like.cables, bundles, like.has_pose, (), like.averaged_s2)
+        return replace(like, run=run, excitation=asked, shift_s=0.0, bundles=bundles, notes=())
 
 
 def experiments(
@@ -247,7 +248,9 @@ def _empty(one: Bundle, excitation: Excitation, tones: tuple[float, ...]) -> Bun
     if excitation.amplitude_deg == 0.0:
         parts = tuple(replace(part, highest_hz=HOLD_LINES_HZ) for part in parts)
     value = np.zeros((len(t_s), one.value.shape[1]))
-    return replace(one, t_s=t_s, value=value, segments=parts, tones_hz=tones, jitter=None)
+    return replace(
+        one, t_s=t_s, value=value, segments=parts, tones_hz=tones, jitter=None, late=None
+    )
 
 
 def write_rig(experiment: Experiment, like: Recording, path: Path) -> Path:

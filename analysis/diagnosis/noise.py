@@ -169,20 +169,29 @@ def _told(
     return _Told(square, 1.0 / float(np.sqrt(known.sum())))
 
 
-def with_instants(bundle: Bundle, instant_s: float, unsure: float = 0.0) -> Bundle:
+def with_instants(
+    bundle: Bundle, instant_s: float, *, unsure: float = 0.0, together_s: float = 0.0
+) -> Bundle:
     """A bundle whose instants are known to a standard deviation, s.
 
     Parameters
     ----------
     bundle, instant_s
-        And that.
+        And that of each by itself.
     unsure
         By which share of itself its square may be larger; 0: it was stated.
+    together_s
+        And that by which neighbours are off alike.
     """
-    if not instant_s:
-        return replace(bundle, jitter=None)
-    jitter = instant_s * _rate(bundle.t_s, bundle.value)
-    return replace(bundle, jitter=jitter, jitter_unsure=unsure)
+    if not instant_s and not together_s:
+        return replace(bundle, jitter=None, late=None)
+    rate = _rate(bundle.t_s, bundle.value)
+    return replace(
+        bundle,
+        jitter=instant_s * rate if instant_s else None,
+        jitter_unsure=unsure,
+        late=together_s * rate if together_s else None,
+    )
 
 
 def _rate(t_s: Array, value: Array) -> Array:

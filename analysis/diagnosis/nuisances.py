@@ -96,7 +96,7 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
         add("cell_gain", "gain_share", CELL_SHARE, "1", i)
         found.append(
             (
-                Nuisance(f"sampling instant@{i}", SAMPLE_S, "s", loose=True),
+                Nuisance(f"sampling instant@{i}", _sample_s(recordings, i), "s", loose=True),
                 Meaning("sampling", cable=i),
             )
         )
@@ -160,6 +160,17 @@ def _of_run(
                 Nuisance(f"pretension of {name}@{i}", row.sigma, "N", cause, term, record=name),
                 Meaning("pretension", "pretension_offset_n", i, number),
             )
+
+
+def _sample_s(recordings: Sequence[Recording], cable: int) -> float:
+    """How far off a cell's sampling instants may be, in the run where they may be most."""
+    offsets = [
+        offset_s
+        for one in recordings
+        for number, offset_s in zip(one.cables, one.offset_s, strict=True)
+        if number == cable
+    ]
+    return float(np.hypot(SAMPLE_S, max(offsets, default=0.0)))
 
 
 def inertia_shares(rig: Rig) -> tuple[float, float, float]:

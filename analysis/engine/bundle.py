@@ -43,6 +43,10 @@ class Segment:
         return np.asarray((t_s >= self.start_s) & (t_s < self.end_s))
 
 
+TOGETHER_S = 1.0
+"""For so long what the instants of samples are off by together stays as it is."""
+
+
 @dataclass(frozen=True)
 class Bundle:
     """Channels sampled together.
@@ -71,6 +75,12 @@ class Bundle:
     jitter
         What one standard deviation of its instant does to each sample, shape (n, m): the rate at
         which values change there, times that; None: instants are known.
+    jitter_unsure
+        By which share of itself the square of that may be larger.
+    late
+        What one standard deviation of that does to each sample by which all instants are off alike
+        for `TOGETHER_S`, and by another for the next, shape (n, m): where what measures runs on its
+        own, and is asked at times that keep step with it. None: instants are off singly.
     noise_from
         How many samples the covariance was taken from; 0: it is known.
     """
@@ -87,4 +97,5 @@ class Bundle:
     tones_hz: tuple[float, ...] = ()
     jitter: Array | None = None
     jitter_unsure: float = 0.0
+    late: Array | None = None
     noise_from: int = 0

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 
 from analysis.engine.array import Array
-from analysis.engine.lens import Labels
+from analysis.engine.labels import Labels
 from analysis.engine.solve import bounded, root_beside_one
 from analysis.engine.variance import form_variance
 

@@ -17,7 +17,7 @@ from analysis.engine.candidate import Candidate, Setting
 from analysis.engine.differences import differences
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.followed import Followed
-from analysis.engine.lens import Labels
+from analysis.engine.labels import Labels
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
 from analysis.engine.stride import LOST, SEEN, Stride

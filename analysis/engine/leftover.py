@@ -72,7 +72,8 @@ def leftover(system: System, point: Point, *, explained: bool) -> tuple[str, ...
         left, white = (bundle.value - seen) / sigmas_of(bundle), roughness(bundle, seen)
         for k, name in enumerate(bundle.names):
             one = _Left(name, bundle.t_s[inside], left[inside, k], float(white[k]))
-            found += [*_outliers(one), *(_unlike_noise(one) if explained else ())]
+            told = explained and bundle.late is None
+            found += [*_outliers(one), *(_unlike_noise(one) if told else ())]
     return tuple(found)
 
 

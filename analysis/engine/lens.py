@@ -10,6 +10,7 @@ the law does, and of sixty thousand samples of a slow signal a few hundred lines
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +18,10 @@ from scipy.fft import dct
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle, Segment
+from analysis.engine.labels import Labels
 from analysis.engine.system import Prediction
 from analysis.engine.tones import drive_frequency_hz, leaked, rings, rings_near
-from analysis.engine.whiten import covariance_over
+from analysis.engine.whiten import covariance_over, whiles
 from cdpr8.errors import DataError
 
 HARMONICS = 10
@@ -46,63 +48,6 @@ CAPTURED = 1e-6
 
 
 @dataclass(frozen=True)
-class Labels:
-    """What each number is, arrays of shape (f,).
-
-    Attributes
-    ----------
-    bundle, channel, segment
-        Places in the system's bundles and in the bundle.
-    line
-        Harmonic of the drive; in a stretch that does not repeat, the frequency in Hz.
-    ringing
-        Whether the system rings here: the phase of what is seen is not to be foretold.
-    growth
-        How much less sure a law is of this line than of the drive's own: its multiple of it.
-    quadrature
-        0: mean or cosine, 1: sine.
-    order
-        Degree of the slow change; 0: none.
-    held_out
-        Whether it is kept back for confirming.
-    group
-        Numbers of one channel, stretch and line, cosine and sine, share their group; those of its
-        slow change have another.
-    stretch
-        Numbers of one channel and stretch share it.
-    samples
-        How many samples the stretch has.
-    free
-        Whether the stretch does not repeat.
-    every
-        Whether all lines of the stretch are looked at; a band of them shares its group.
-    sealed
-        Whether nothing but the proof may see it.
-    """
-
-    bundle: NDArray[np.int64]
-    channel: NDArray[np.int64]
-    segment: NDArray[np.int64]
-    line: Array
-    ringing: NDArray[np.bool_]
-    growth: Array
-    quadrature: NDArray[np.int64]
-    order: NDArray[np.int64]
-    held_out: NDArray[np.bool_]
-    group: NDArray[np.int64]
-    stretch: NDArray[np.int64]
-    samples: NDArray[np.int64]
-    free: NDArray[np.bool_]
-    every: NDArray[np.bool_]
-    sealed: NDArray[np.bool_]
-
-    @property
-    def series(self) -> NDArray[np.int64]:
-        """Numbers of one channel of one bundle share it."""
-        return self.bundle * (int(self.channel.max(initial=0)) + 1) + self.channel
-
-
-@dataclass(frozen=True)
 class _Part:
     """One stretch of one bundle; no basis: the cosine transform."""
 
@@ -126,6 +71,7 @@ class Lens:
         self._parts: list[_Part] = []
         rows: list[tuple[float, ...]] = []
         rung: list[Array] = []
+        late: list[Array] = []
         group, stretch = 0, -1
         for b, bundle in enumerate(self.bundles):
             for s, segment in enumerate(bundle.segments):
@@ -149,6 +95,7 @@ class Lens:
                     seen = bundle.value[inside] @ whiten.T
                     steady = np.array([lines[place][2] == 0 for place in kept])
                     rung.append(leaked(bundle.t_s[inside], seen, basis, steady, bundle.tones_hz))
+                late.append(_late(bundle, inside, basis, whiten))
                 hertz = segment.fundamental_hz or 1.0
                 unit = 1.0 if segment.fundamental_hz is not None else drive_frequency_hz(bundle)
                 for c in range(len(bundle.names)):
@@ -182,6 +129,8 @@ class Lens:
         self.rung: Array = np.concatenate(rung) if rung else np.zeros(0)
         """What the ring of the recording gives each feature of a stretch that repeats, as variance,
         shape (f,)."""
+        self.late: Array = np.concatenate(late) if late else np.zeros(0)
+        """What instants that are off alike for a while give each, as variance, shape (f,)."""
         columns = list(zip(*rows, strict=True)) if rows else [()] * 15
         self.labels = Labels(
             bundle=np.array(columns[0], dtype=np.int64),
@@ -231,16 +180,32 @@ class Lens:
         found = []
         for part in self._parts:
             samples = prediction[part.bundle][part.rows]
-            if part.basis is None:
-                seen = dct(samples, type=2, norm="ortho", axis=0)
-            else:
-                seen = part.basis.T @ samples
-            found.append((seen @ part.whiten.T).T.reshape(-1))
+            found.append(_resolved(samples, part.basis, part.whiten))
         return np.concatenate(found) if found else np.zeros(0)
 
     def of_data(self) -> Array:
         """Features of what was recorded."""
         return self([bundle.value for bundle in self.bundles])
+
+
+def _resolved(samples: Array, basis: Array | None, whiten: Array) -> Array:
+    """Features of the samples of a stretch, one channel after the other."""
+    seen = dct(samples, type=2, norm="ortho", axis=0) if basis is None else basis.T @ samples
+    return np.asarray((seen @ whiten.T).T.reshape(-1))
+
+
+def _late(bundle: Bundle, inside: NDArray[np.int64], basis: Array | None, whiten: Array) -> Array:
+    """Variance of the features of a stretch where all instants are off alike for a while."""
+    none = np.zeros((inside.size, len(bundle.names)))
+    variance = np.zeros_like(_resolved(none, basis, whiten))
+    if bundle.late is None:
+        return variance
+    first, _ = whiles(bundle.t_s[inside])
+    for begin, end in pairwise([*first, inside.size]):
+        there = none.copy()
+        there[begin:end] = bundle.late[inside[begin:end]]
+        variance += _resolved(there, basis, whiten) ** 2
+    return variance
 
 
 def _every_line(t_s: Array) -> list[tuple[float, int, int]]:

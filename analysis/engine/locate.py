@@ -14,7 +14,7 @@ from scipy.stats import chi2
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
 from analysis.engine.evidence import Problem
-from analysis.engine.lens import Labels
+from analysis.engine.labels import Labels
 from analysis.engine.whiten import covariance_over
 
 SIGNIFICANT = 0.01

@@ -141,7 +141,7 @@ class _Told(NamedTuple):
 def _told(bundle: Bundle, seen: Array) -> _Told:
     as_stated = _Told(np.ones(len(bundle.names)), bundle.noise_from, np.zeros(0), is_off=False)
     count = int(np.sum([one.holds(bundle.t_s) for one in bundle.segments if not one.sealed]))
-    if bundle.jitter is not None or count < LEAST_SAMPLES:
+    if bundle.jitter is not None or bundle.late is not None or count < LEAST_SAMPLES:
         return as_stated
     rough, fourth = (roughness(bundle, seen, one) for one in ORDERS)
     freedom = count / WORTH

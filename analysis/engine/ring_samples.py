@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,7 +69,8 @@ class Samples:
         self.effort += (OVERHEAD + (1.0 - OVERHEAD) * upto) * len(asked)
         found: list[Array] = []
         for first in range(0, len(points), BATCH):
-            found += self.system.simulate(asked[first : first + BATCH], self._residual)
+            reduce = partial(self._residual, share=share)
+            found += self.system.simulate(asked[first : first + BATCH], reduce)
         for one in found:
             one[after] = 0.0
         return found
@@ -103,10 +104,10 @@ class Samples:
                 longest = max(longest, float((t_s[last] - t_s[0]) / (t_s[-1] - t_s[0])))
         return longest
 
-    def _residual(self, prediction: Prediction) -> Array:
+    def _residual(self, prediction: Prediction, share: float = 1.0) -> Array:
         """Residuals of the samples that count, in blocks, one bundle after the other."""
         pairs = zip(self._parts, prediction, strict=True)
-        return np.concatenate([part.residual(found).reshape(-1) for part, found in pairs])
+        return np.concatenate([part.residual(found, share).reshape(-1) for part, found in pairs])
 
     @property
     def motion(self) -> float:
@@ -178,6 +179,7 @@ class _Part:
 
     def __init__(self, bundle: Bundle, chosen: NDArray[np.bool_]) -> None:
         places = np.flatnonzero(chosen)
+        self._count = len(places)
         self._block = _block(bundle)
         places = places[: len(places) // self._block * self._block]
         whole = len(places) and places[-1] - places[0] + 1 == len(places)
@@ -185,9 +187,12 @@ class _Part:
         self._value = bundle.value[self._places]
         self._whiten = Whiten(bundle, self._places)
 
-    def residual(self, found: Array) -> Array:
-        """In units of noise, shape (blocks, m)."""
-        rest = self._whiten(self._value - found[self._places])
+    def residual(self, found: Array, share: float) -> Array:
+        """In units of noise, shape (blocks, m), of samples up to a share of them; then nothing."""
+        rest = self._value - found[self._places]
+        # What was not simulated may be anything, and whitening looks at neighbours as well.
+        rest[int(np.ceil(share * self._count)) :] = 0.0
+        rest = self._whiten(rest)
         if self._block == 1:
             return rest
         rest = rest.reshape(-1, self._block, rest.shape[1])

@@ -3,7 +3,8 @@
 import numpy as np
 
 from analysis.engine.array import Array
-from analysis.engine.lens import Labels, Lens
+from analysis.engine.labels import Labels
+from analysis.engine.lens import Lens
 
 SPILLED = 0.1
 """The error of form reaches lines where the law itself does little: this share of what it does."""
@@ -95,7 +96,7 @@ def base_variance(lens: Lens, features: Array, data: Array) -> Array:
     coloured = group_power(labels, np.where(moving, features, 0.0))
     coloured += SPREAD * total[labels.stretch] / labels.samples
     variance = 1.0 + share**2 * np.where(labels.every, coloured, total[labels.stretch])
-    variance += lens.rung
+    variance += lens.rung + lens.late
     rung = np.where(labels.ringing & labels.free, np.maximum(features**2, data**2) - 1.0, 0.0)
     for stretch in np.unique(labels.stretch[labels.ringing & labels.free]):
         own = np.flatnonzero(labels.stretch == stretch)

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.diagnosis.recording import recording, segments
+from analysis.diagnosis.recording import recording
+from analysis.diagnosis.segments import segments
 from analysis.diagnosis.sight import FAR, Sight, seen_by
 from cdpr8.runfolder import Run, load_run, sample_data_folder
 from model import simulate
