@@ -21,7 +21,7 @@ START_S = 2e-4
 UNKNOWN_START_S = 0.02
 """And where it was found by correlation."""
 
-LATENCY_S = 5e-4
+LATENCY_S = 2.5e-4
 """How well the camera's stamps are on the tension clock."""
 
 CLOCK_PPM = 30.0
