@@ -8,9 +8,10 @@ import numpy as np
 
 from analysis.diagnosis.figure_maps import TICKS, by_harmonic, paint
 from analysis.diagnosis.figure_style import Look, key, shown
+from analysis.diagnosis.fit_words import KINDS
 from analysis.diagnosis.pictures import Array, Channel, Pictures, Record
 from analysis.diagnosis.spelling import listed
-from analysis.diagnosis.words import KINDS, headline
+from analysis.diagnosis.words import headline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

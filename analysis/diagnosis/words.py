@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analysis.diagnosis import proposing
+from analysis.diagnosis.fit_words import falls, far_from_noise, improvement
 from analysis.diagnosis.guesses import in_words as guesses_in_words
 from analysis.diagnosis.phrases import phrase
 from analysis.diagnosis.policies import FRICTIONS
@@ -18,21 +19,13 @@ from analysis.diagnosis.titles import parameter_name, short
 RULED_OUT = 3.0
 """Logarithm of odds, 20 to 1."""
 
-FALLS = 0.99
-"""An error that comes to less than this share of what it was has fallen."""
-
 TOLD_RIVALS = 4
 """Rivals that are named in a sentence."""
-
-FAR_FROM_NOISE = 3.0
-"""A simulation that misses by more than this, in units of noise, is not told of as if it fitted."""
 
 MOVED_SIGMAS = 2.0
 """A parameter that moved further than this is told."""
 
 SIDE = "On which side it is"
-
-KINDS = {"tension": "tensions", "pose": "poses"}
 
 Statement = Mapping[str, Any]
 
@@ -41,7 +34,7 @@ def paragraph(said: Statement) -> str:
     """What was found, in one paragraph."""
     causes = (_cause(one) for one in said["causes"])
     return " ".join([headline(said), *_not_ruled_out(said), *causes,
-                     *_laws_of_one_thing(said), *_improvement(said), *_remains(said)])  # fmt: skip
+                     *_laws_of_one_thing(said), *improvement(said), *_remains(said)])  # fmt: skip
 
 
 def sections(said: Statement) -> list[tuple[str, str]]:
@@ -115,8 +108,8 @@ def _explained(said: Statement, names: str) -> str:
             f"does not follow the recording with {it} either."
         )
     how = "follows"
-    if _far_from_noise(said):
-        how = "comes nearer" if _falls(said) else "comes no nearer to"
+    if far_from_noise(said):
+        how = "comes nearer" if falls(said) else "comes no nearer to"
     return f"The simulation left out {names}, and with {it} it {how} the recording."
 
 
@@ -214,55 +207,6 @@ def friction_of_cables(said: Statement) -> dict[int, float]:
             for cable, value in cause["parameters"].get("coulomb_n", {}).get("cables", {}).items():
                 total[int(cable)] = total.get(int(cable), 0.0) + float(value)
     return total
-
-
-def _improvement(said: Statement) -> list[str]:
-    before, after = said["fit"].get("before", {}), said["fit"].get("after", {})
-    if not said["causes"]:
-        kinds = before.get("held_out") or before.get("used") or {}
-        if not kinds:
-            return []
-        parts = [f"{value:.3g} for {KINDS.get(kind, kind)}" for kind, value in kinds.items()]
-        return [f"What the simulation misses is, in units of the noise, {listed(parts)}."]
-    part = _part(said)
-    if not before.get(part) or not after.get(part):
-        return []
-    parts = [
-        f"from {value:.3g} to {after[part][kind]:.3g} for {KINDS.get(kind, kind)}"
-        for kind, value in before[part].items()
-        if kind in after[part]
-    ]
-    data = "data that the fit did not use" if part == "held_out" else "the data that were fitted"
-    texts = [
-        f"On {data}, the error of the simulation {'falls' if _falls(said) else 'goes'} "
-        f"{listed(parts)}, in units of the noise (1 is noise alone)."
-    ]
-    if _far_from_noise(said):
-        texts.append(
-            "That is still well above the noise. What rings after a kick cannot be foretold in its "
-            "phase and is not held against a law, so more may hide in it."
-        )
-    return texts
-
-
-def _part(said: Statement) -> str:
-    """Of the data, on which before and after are compared."""
-    both = (said["fit"].get(one, {}).get("held_out") for one in ("before", "after"))
-    return "held_out" if all(both) else "used"
-
-
-def _falls(said: Statement) -> bool:
-    """Whether the simulation misses less of anything with the causes in, or nobody looked."""
-    before, after = said["fit"].get("before", {}), said["fit"].get("after", {})
-    part = _part(said)
-    kinds = before.get(part, {}).keys() & after.get(part, {}).keys()
-    return not kinds or any(after[part][one] < FALLS * before[part][one] for one in kinds)
-
-
-def _far_from_noise(said: Statement) -> bool:
-    """Whether the simulation still misses by far more than the noise, causes in."""
-    values = [v for kinds in said["fit"].get("after", {}).values() for v in kinds.values()]
-    return max(values, default=0.0) > FAR_FROM_NOISE
 
 
 def _remains(said: Statement) -> list[str]:

@@ -236,6 +236,14 @@ def test_a_fit_that_does_not_fall_is_not_told_to_fall() -> None:
     assert "show it by themselves" not in told
 
 
+def test_an_error_that_falls_for_poses_and_rises_for_tensions_does_not_fall() -> None:
+    fit = statement()["fit"]
+    fit["before"] = {"held_out": {"tension": 1.14, "pose": 1.09}}
+    fit["after"] = {"held_out": {"tension": 1.5, "pose": 1.06}}
+    told = paragraph(statement(fit=fit))
+    assert "goes from 1.14 to 1.5 for tensions and from 1.09 to 1.06 for poses" in told
+
+
 def test_what_samples_show_is_told_as_that() -> None:
     said = statement()
     said["remains"] = {**said["remains"], "shown": True}
