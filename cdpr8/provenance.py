@@ -1,9 +1,7 @@
 """What a result came from: versions of the toolkit and its libraries, and hashes of inputs."""
 
-import hashlib
 import platform
 from importlib import metadata
-from pathlib import Path
 
 RECORDED_PACKAGES = ("cdpr8", "numpy", "scipy", "numba", "pandas", "av", "pyserial")
 OPENCV_PACKAGES = (
@@ -23,8 +21,3 @@ def versions() -> dict[str, str]:
         except metadata.PackageNotFoundError:
             continue
     return found
-
-
-def sha256_of(path: Path) -> str:
-    """SHA-256 of a file's bytes, in hexadecimal."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()

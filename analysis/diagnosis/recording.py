@@ -1,6 +1,5 @@
 """A run as the engine sees it: bundles of channels with times, noise and stretches of time."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -162,8 +161,3 @@ def _hangs(tension_n: Array, sigma_n: float) -> bool:
     at_zero, below = np.abs(tension_n) < near, tension_n < -near
     pulls = float(np.median(tension_n)) > HANGS_SIGMAS * near
     return pulls and bool(at_zero.mean() > HANGS_SHARE > 10.0 * below.mean())
-
-
-def names_of(recordings: Sequence[Recording]) -> str:
-    """Their names in words."""
-    return ", ".join(one.run.name for one in recordings)

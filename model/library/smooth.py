@@ -23,11 +23,6 @@ def smooth_positive(value: Any, width: Any) -> Any:
     return 0.5 * (value + np.sqrt(value * value + width * width))
 
 
-def positive(value: Any) -> Any:
-    """max(value, 0)."""
-    return max(value, 0.0)
-
-
 def gaussian(value: Any) -> Any:
     """exp(-value^2), by its series in an eighth part: within 1e-4."""
     square = value * value
