@@ -118,6 +118,7 @@ class FollowedSearch(ToldLeader):
             return
         if guessed and not self._near:
             self._lead_next(others, lambda led: not self._is_strained(led))
+        if guessed or self._near:
             self._lead_alike(others)
         self._lead_beside()
 

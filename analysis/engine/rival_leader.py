@@ -85,12 +85,16 @@ class RivalLeader(Leader):
     def _lead_alike(self, others: Sequence[Guess]) -> None:
         """Laws of the best's kind in all places alike, where it leaves more than noise.
 
-        And of what came as close in some places: of which kind it is, these may hide.
+        And of what came as close in some places: of which kind it is, these may hide. Near the
+        phase the best's own law is led so, over windows: what is faint everywhere was told of some
+        places, and led into a valley of theirs. Its kin are led from there.
         """
-        if self._best.left < NOISE:
+        if self._best.left < (noise_of(self._system) if self._near else NOISE):
             return
-        for came in (self._best, *self._as_close_elsewhere()):
+        for came in (self._best,) if self._near else (self._best, *self._as_close_elsewhere()):
             for one in kin_alike(came, others, self._refiner.candidates):
+                if self._near and one.hypothesis.names != came.names:
+                    continue
                 ahead = self._best.costs
                 found = follow_ring(
                     self._system, one.nuisance, one.state.alike(), everything=True, ahead=ahead
@@ -98,6 +102,8 @@ class RivalLeader(Leader):
                 # What falls behind says nothing of its kind: it is led from the best's own places.
                 if farthest_first(found) < farthest_first(self._best):
                     self._keep(found)
+            if self._near and cost_of(self._best) < cost_of(came) - WORTH_IT:
+                self._call_misplaced(came)
 
     def _as_close_elsewhere(self) -> list[Followed]:
         """Single causes of other kinds than the best that came as close."""
@@ -180,10 +186,16 @@ class RivalLeader(Leader):
                 state = State.of(one, candidates)
                 self._keep(lead_from(self._system, best, state, nuisances_of(asked, one)))
             if cost_of(self._best) < cost_of(best) - WORTH_IT:
-                # What came as far may have been in places that are as wrong.
-                close = (one for one in self._led if cost_of(one) < cost_of(best) + CLOSE)
-                self._misplaced |= {one.names for one in close if one.names != best.names}
-                self._tried -= self._misplaced
+                self._call_misplaced(best)
+
+    def _call_misplaced(self, best: Followed) -> None:
+        """What came as far as what was in wrong places may have been in places that are as wrong.
+
+        It is led once more.
+        """
+        close = (one for one in self._led if cost_of(one) < cost_of(best) + CLOSE)
+        self._misplaced |= {one.names for one in close if one.names != best.names}
+        self._tried -= self._misplaced
 
     def _lead_freed(self) -> None:
         """Where parameters of one kind were bent far, they stand for a cause: it is led as one.
