@@ -19,6 +19,9 @@ from analysis.engine.state import State
 from tests.analysis.one_ring import T_S, ZERO, OneRing
 
 PLACES = "1234"
+FAINT = 0.03
+"""So that two of four places explain all but a little more than noise."""
+
 OFF = {"loss": 0.0, "kindred": 0.008}
 """How far each law is from the first."""
 
@@ -73,6 +76,43 @@ def test_a_law_in_all_places_alike_is_found_from_its_kin_in_some() -> None:
     assert best.hypothesis.parts["loss"].shared
     assert set(best.hypothesis.parts["loss"].terms) == {f"size@{p}" for p in PLACES}
     assert abs(best.values["loss", "size@1"] - 0.25) < 0.02
+
+
+class Apart(Summed):
+    """The same, where each place is seen by a faint tone of its own."""
+
+    name = "apart"
+
+    def added(self, point: Point) -> Array | float:
+        """The losses."""
+        found: Array | float = 0.0
+        for on in point.effects.values():
+            for term, size in on.values.items():
+                hertz = 0.5 + 0.2 * PLACES.index(term.removeprefix("size@"))
+                found = found + FAINT * size * np.sin(2.0 * np.pi * hertz * T_S)
+        return found
+
+
+class NothingBeside(FollowedSearch):
+    """Looks no farther than what it was given."""
+
+    def _lead_beside(self) -> None:
+        """Not asked."""
+
+
+def test_near_the_phase_what_leaves_more_than_noise_is_led_in_all_places_alike() -> None:
+    system = Apart()
+    seen = look(system)
+    refiner = Refiner(system, seen.lens, seen.data, seen.calibrated)
+    nothing = follow_ring(system, ZERO, everything=True)
+    search = NothingBeside(refiner, nothing, 2, near=True)
+    some = {"size@2": 0.25, "size@3": 0.25}
+    guess = Guess(State.at(part("loss", some, True), of("loss", some), KNOWN), ZERO)
+    search.follow([guess], [guess])
+    found = search.fitted()
+    assert found is not None
+    assert set(found[0].hypothesis.parts["loss"].terms) == {f"size@{p}" for p in PLACES}
+    assert found[0].values["loss", "size@1"] == pytest.approx(0.25, abs=0.02)
 
 
 def test_one_cause_of_two_is_made_alike_and_the_other_stays() -> None:
