@@ -1,4 +1,4 @@
-"""How much noise there is in samples of a motion, where nothing was recorded at rest."""
+"""How much noise there is in samples of a motion: what lies between the lines of their spectrum."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,26 +7,23 @@ from cdpr8.rigfile.excitation import Excitation
 
 Array = NDArray[np.float64]
 
-HARMONICS = 4
-"""Of the drive, that are fitted and taken off before anything else."""
+HARMONICS = 7
+"""Of the drive, taken off before the floor of a spectrum is looked for."""
 
-BAND = 0.45
-"""Of the mean rate of the samples: harmonics above it would be folded."""
+LOWEST_BINS = 3
+"""Of a spectrum, that hold what is left of trends."""
+
+HALF = 0.5
+"""Share of a spectrum's bins that a ring and a drift do not reach."""
 
 FEWEST = 48
-"""A stretch of fewer samples has too few lines for a median of them."""
-
-SLOWEST = 2
-"""Lines, of the lowest frequencies, that a drift widens: they are not asked."""
+"""A stretch of fewer samples has too few lines for that."""
 
 
 def noise_floor(t_s: Array, value: Array, excitation: Excitation, shift_s: float = 0.0) -> float:
-    """Standard deviation of the noise of one sample: an estimate that errs upward.
+    """Standard deviation of the noise of one sample that was never at rest: it errs upward.
 
-    The drive's harmonics are fitted at the samples' own times; of the lines of what is left, half
-    are below the median, wherever some stand out: a ring and a drift are a few lines, noise is all
-    of them. Of noise alone a line's power is exponentially distributed, with a median of log 2 of
-    its mean. Where neighbours bend less than that, as those of quick samples do, they are believed.
+    Where neighbours bend less than the floor, as those of quick samples do, they are believed.
 
     Parameters
     ----------
@@ -41,24 +38,37 @@ def noise_floor(t_s: Array, value: Array, excitation: Excitation, shift_s: float
         steady = np.ones(len(t_s), dtype=bool)
     if np.count_nonzero(steady) < FEWEST:
         return _about_bend(value)
-    left = _without_drive(t_s[steady], value[steady], excitation.frequency_hz)
-    taper = np.hanning(len(left))
-    power = np.abs(np.fft.rfft(left * taper)) ** 2 / float(taper @ taper)
-    of_lines = float(np.sqrt(np.median(power[SLOWEST:-1]) / np.log(2.0)))
-    return min(of_lines, _about_bend(value))
+    variance = floor_between_lines(t_s[steady], value[steady, None], excitation.frequency_hz, HALF)
+    return min(float(np.sqrt(variance[0])), _about_bend(value))
 
 
-def _without_drive(t_s: Array, value: Array, frequency_hz: float) -> Array:
-    """What a constant, a drift and the drive's harmonics leave."""
-    span_s = float(np.ptp(t_s))
-    tau = t_s - t_s[0]
-    columns = [np.ones_like(tau), tau / span_s]
-    for harmonic in range(1, HARMONICS + 1):
-        if harmonic * frequency_hz < BAND * (len(t_s) - 1) / span_s:
-            angle = 2.0 * np.pi * harmonic * frequency_hz * tau
-            columns += [np.cos(angle), np.sin(angle)]
-    design = np.column_stack(columns)
-    return np.asarray(value - design @ np.linalg.lstsq(design, value, rcond=None)[0])
+def floor_between_lines(t_s: Array, value: Array, frequency_hz: float, quiet: float) -> Array:
+    """Variance of what lies between the lines of each column's spectrum, shape (m,).
+
+    The drive's harmonics are fitted at the samples' own times.
+
+    Parameters
+    ----------
+    t_s, value
+        Samples, about evenly apart, shapes (n,) and (n, m).
+    frequency_hz
+        Of the drive.
+    quiet
+        Share of the bins that no line is expected to reach.
+    """
+    count = len(t_s)
+    nyquist_hz = 0.5 * (count - 1) / (t_s[-1] - t_s[0])
+    turns = 2.0 * np.pi * frequency_hz * (t_s - t_s[0])
+    waves = [np.ones(count), t_s - t_s.mean()]
+    for number in range(1, HARMONICS + 1):
+        if number * frequency_hz < nyquist_hz:
+            waves += [np.cos(number * turns), np.sin(number * turns)]
+    basis = np.stack(waves, axis=1)
+    rest = value - basis @ np.linalg.lstsq(basis, value, rcond=None)[0]
+    window = np.hanning(count)[:, None]
+    power = np.abs(np.fft.rfft(rest * window, axis=0)) ** 2 / (window**2).sum()
+    # A bin of white noise has an exponential distribution.
+    return np.asarray(np.quantile(power[LOWEST_BINS:], quiet, axis=0) / -np.log1p(-quiet))
 
 
 def _about_bend(value: Array) -> float:

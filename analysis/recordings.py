@@ -16,25 +16,13 @@ def load_recordings(
 ) -> "tuple[Recording, ...]":
     """Load runs with progress shown, and say which of them are tracked.
 
-    Parameters
-    ----------
-    folders
-        Run folders.
-    rig
-        The machine, where it is not the runs' own.
-    workers
-        Processes.
-
-    Raises
-    ------
-    DataError
-        A run has nothing usable, or two have the same name.
+    Parameters and errors are those of `analysis.diagnosis.prepare.prepare`.
     """
-    from analysis.diagnosis.prepare import prepare, runs_of_one_machine
+    from analysis.diagnosis.prepare import prepare_runs, runs_of_one_machine
 
     runs = runs_of_one_machine(folders)
     untracked = [run for run in runs if run.pose is None and run.video is not None]
     for run in untracked:
         note(f"{run.name} has no pose.csv: tracking its video")
     with progress("tracking", sum(len(run.frames) for run in untracked) or None) as step:
-        return prepare(folders, rig=rig, step=step, workers=workers)
+        return prepare_runs(runs, rig=rig, step=step, workers=workers)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.engine.bundle import Bundle
+from analysis.noise_floor import floor_between_lines
 from cdpr8.rigfile.excitation import Excitation
 
 if TYPE_CHECKING:
@@ -23,12 +24,6 @@ LEAST_REST = 20
 
 SETTLES_S = 0.02
 """The last of the rest is not counted as rest."""
-
-HARMONICS = 7
-"""Of the drive, taken off before the floor of a spectrum is looked for."""
-
-LOWEST_BINS = 3
-"""Of a spectrum, that hold what is left of trends."""
 
 QUIET = 0.25
 """Share of a spectrum's bins that no line is expected to reach, however much rings."""
@@ -153,7 +148,7 @@ def _told(
         noise = np.diag(bundle.covariance)
         rest = int(at_rest(bundle.t_s, excitation, shift_s).sum())
         spread = np.hypot(2.0 / np.sqrt(QUIET * len(piece)), np.sqrt(2.0 / max(rest, 1)))
-        excess.append(_floor(t_s, value, excitation.frequency_hz) - noise)
+        excess.append(floor_between_lines(t_s, value, excitation.frequency_hz, QUIET) - noise)
         power.append(np.mean(_rate(t_s, value) ** 2, axis=0))
         still.append(spread * noise)
     rate, above, spreads = (np.concatenate([np.zeros(0), *one]) for one in (power, excess, still))
@@ -208,21 +203,3 @@ def _without_gaps(t_s: Array, places: NDArray[np.int64]) -> NDArray[np.int64]:
     interval = np.diff(t_s[places])
     pieces = np.split(places, np.flatnonzero(interval > REGULAR * np.median(interval)) + 1)
     return max(pieces, key=len)
-
-
-def _floor(t_s: Array, value: Array, frequency_hz: float) -> Array:
-    """Variance of what lies between the lines of each column's spectrum, shape (m,)."""
-    count = len(t_s)
-    nyquist_hz = 0.5 * (count - 1) / (t_s[-1] - t_s[0])
-    turns = 2.0 * np.pi * frequency_hz * (t_s - t_s[0])
-    waves = [np.ones(count), t_s - t_s.mean()]
-    for number in range(1, HARMONICS + 1):
-        if number * frequency_hz < nyquist_hz:
-            waves += [np.cos(number * turns), np.sin(number * turns)]
-    basis = np.stack(waves, axis=1)
-    rest = value - basis @ np.linalg.lstsq(basis, value, rcond=None)[0]
-    window = np.hanning(count)[:, None]
-    power = np.abs(np.fft.rfft(rest * window, axis=0)) ** 2 / (window**2).sum()
-    # A bin of white noise has an exponential distribution.
-    quiet = np.quantile(power[LOWEST_BINS:], QUIET, axis=0) / -np.log1p(-QUIET)
-    return np.asarray(quiet)

@@ -43,7 +43,17 @@ def prepare(
     DataError
         A run has nothing usable, or two have the same name.
     """
-    runs = runs_of_one_machine(folders)
+    return prepare_runs(runs_of_one_machine(folders), rig=rig, step=step, workers=workers)
+
+
+def prepare_runs(
+    runs: Sequence[Run],
+    *,
+    rig: Rig | None = None,
+    step: Callable[[], None] | None = None,
+    workers: int = 1,
+) -> tuple[Recording, ...]:
+    """As `prepare`, of runs that are loaded."""
     with one_thread_each():
         return tuple(_prepare(run, rig, step, workers) for run in runs)
 

@@ -196,10 +196,11 @@ def _resolved(samples: Array, basis: Array | None, whiten: Array) -> Array:
 
 def _late(bundle: Bundle, inside: NDArray[np.int64], basis: Array | None, whiten: Array) -> Array:
     """Variance of the features of a stretch where all instants are off alike for a while."""
-    none = np.zeros((inside.size, len(bundle.names)))
-    variance = np.zeros_like(_resolved(none, basis, whiten))
+    size = inside.size if basis is None else basis.shape[1]
+    variance = np.zeros(size * len(bundle.names))
     if bundle.late is None:
         return variance
+    none = np.zeros((inside.size, len(bundle.names)))
     first, _ = whiles(bundle.t_s[inside])
     for begin, end in pairwise([*first, inside.size]):
         there = none.copy()

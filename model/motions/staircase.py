@@ -70,7 +70,7 @@ class Staircase:
         """Start and end of every step."""
         return tuple(float(at) for start in self.moments_s for at in (start, start + self.rise_s))
 
-    def at(self, time_s: Array, within_s: Array | None = None) -> Command:  # noqa: ARG002
+    def at(self, time_s: Array, within_s: Array | None = None) -> Command:  # noqa: ARG002  # as `Motion.at` is called
         """X*, X*' and X*''; see `model.motion.Motion.at`. All three are continuous."""
         time_s = np.asarray(time_s, dtype=float)
         levels = np.vstack([np.zeros(6), np.array(self.poses), np.zeros(6)])

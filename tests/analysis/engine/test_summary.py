@@ -7,7 +7,8 @@ from tests.analysis.engine.test_settled import Bent
 def test_what_is_printed_holds_verdict_cause_number_and_proof() -> None:
     found = diagnose(Bent())
     first, cause, left, used, held, *rest = str(found).splitlines()
-    (named,) = found.judgement.causes  # type: ignore[union-attr]
+    assert found.judgement is not None
+    (named,) = found.judgement.causes
     assert first == "line: explained"
     value, sigma = named.values["bend"], named.sigmas["bend"]
     assert cause == f"  bend, 0.95: bend {value:.4g} +- {sigma:.2g} V/s^2"
