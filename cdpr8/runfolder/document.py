@@ -6,7 +6,9 @@
 import json
 from enum import IntFlag
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel
 
 from cdpr8.rigfile.excitation import Excitation
 from cdpr8.runfolder.records import Node, StartRecord, StopRecord
@@ -108,6 +110,9 @@ here reads; the JSON Schemas are in `cdpr8/runfolder/schemas/`.
 | `pose.csv` | written by `vision track` |
 | `results/` | written by `analysis` (into `./results/RUN` where the run is packaged or read-only) |
 
+`start.json`, `rig.toml` and `tension.csv` must be there; `analysis` needs a pose as well, from
+`pose.csv` or tracked in the video.
+
 Every file is valid when cut at any byte: a torn last line is dropped and said. Nothing is repaired:
 a damaged cell is refused with its file, line and column. An empty cell means: not measured. Times
 are seconds from the run's monotonic origin; positions in m, forces in N, angles in deg; cables are
@@ -138,12 +143,31 @@ def _start_section() -> str:
     """The keys of start.json that do not speak for themselves, of the motion, of an amplifier."""
     records = (("", StartRecord), ("excitation.", Excitation), ("nodes[].", Node))
     rows = [
-        f"| `{prefix}{name}` | {field.description} |"
+        f"| `{prefix}{name}` | {_allowed(field.annotation)}{field.description} |"
         for prefix, record in records
         for name, field in record.model_fields.items()
         if field.description
     ]
-    return "## start.json\n\n| key | meaning |\n|---|---|\n" + "\n".join(rows) + "\n" + _MOTION
+    needed = ", ".join(f"`{name}`" for name in _needed(StartRecord))
+    others = ", ".join(f"`{name}`" for name in _needed(Node))
+    head = (
+        f"It must have {needed}; each of `nodes`, which may be empty, {others}. All else may be\n"
+        "left out, or be null where it is not known.\n\n"
+    )
+    table = "| key | meaning |\n|---|---|\n" + "\n".join(rows) + "\n"
+    return "## start.json\n\n" + head + table + _MOTION
+
+
+def _needed(record: type[BaseModel]) -> list[str]:
+    return [name for name, field in record.model_fields.items() if field.is_required()]
+
+
+def _allowed(annotation: Any) -> str:
+    """The values of a key that has a few, as a beginning of what it means."""
+    for one in (annotation, *get_args(annotation)):
+        if get_origin(one) is Literal:
+            return " or ".join(f"`{value}`" for value in get_args(one)) + ": "
+    return ""
 
 
 _MOTION = """
@@ -155,6 +179,9 @@ from 0 to 1 over `ramp_s` by the law `ramp` and falls by the same law as `ending
 that leaves `ramp` or `ending` out does not state them: `analysis` then finds out from the onset and
 the end of the motion which of these laws it was, and says so. X_p0 and X_w0
 are added to the state at tau = 0.
+
+What the rig file's pretensions and weight do not balance, a constant wrench holds: the rig file's
+machine rests at X = 0 with its pretensions, whatever drives it.
 
 Winches alone do not make the angle: cables give, and a platform that is paid out 2 deg moves less.
 

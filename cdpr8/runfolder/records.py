@@ -53,7 +53,8 @@ class Node(Record):
         default=None,
         description="standard uncertainty of the instants in tension.csv: on a bus the output "
         "period over the square root of 12, each amplifier for itself; at most that, where the "
-        "dialect is unknown",
+        "dialect is unknown. It is the age of a value when it was asked for: of each sample "
+        "another, or of a second's samples the same, where asking kept step with the amplifier",
     )
     filter_delay_s: float | None = Field(
         default=None,
