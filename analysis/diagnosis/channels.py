@@ -115,7 +115,8 @@ def tension_of(
     )
     node = next((one for one in run.start.nodes if one.cable == cable), None)
     stated_s = (node and node.sampling_sigma_s) or 0.0
-    age = _ages(good, node)
+    # What comes unasked was never asked for: its instants are off each for itself.
+    age = SINGLY if run.start.sweep == "streaming" else _ages(good, node)
     made = with_instants(
         found,
         stated_s * float(np.sqrt(age.singly / block)),

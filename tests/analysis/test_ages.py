@@ -1,9 +1,19 @@
 """How old values are when an amplifier that runs on its own is asked for them."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from analysis.diagnosis.ages import SINGLY, ages
+from analysis.diagnosis.channels import tension_of
+from analysis.engine.bundle import Bundle
+from cdpr8.runfolder import Run
+from cdpr8.runfolder.records import Node
+from rig.simulated.plant import PlatformTrajectory
+
+MakeRun = Callable[..., Run]
 
 
 def test_requests_in_step_with_the_output_leave_one_age_for_a_whole_run() -> None:
@@ -35,3 +45,17 @@ def test_what_wanders_is_shared_for_a_while_and_not_throughout() -> None:
 
 def test_of_few_requests_nothing_is_told() -> None:
     assert ages(np.array([0.0, 1.5, 3.2]), 1.0 / 600.0) == SINGLY
+
+
+def test_what_comes_unasked_has_no_age(make_run: MakeRun, frictionless: PlatformTrajectory) -> None:
+    recorded = make_run(frictionless)
+    node = Node(cable=1, address=1, output_period_s=0.004, sampling_sigma_s=1e-3)
+
+    def bundle(sweep: str) -> Bundle:
+        start = recorded.start.model_copy(update={"sweep": sweep, "nodes": (node,)})
+        run = replace(recorded, start=start)
+        return tension_of(run, 1, start.excitation, 0.0, []).bundle
+
+    asked, unasked = bundle("polled"), bundle("streaming")
+    assert (asked.late is None, asked.jitter is None) == (False, True)
+    assert (unasked.late is None, unasked.jitter is None) == (True, False)
