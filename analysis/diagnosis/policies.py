@@ -41,7 +41,7 @@ class Policy:
 
 def _friction(**shapes: tuple[float, ...]) -> Policy:
     """Of a law whose bristles were left bent by what came before the run."""
-    own = {"bristle_loss_s": (5e-4,), "dahl_exponent": (1.0,)}
+    own = {"bristle_loss_s": (5e-4,), "dahl_exponent": (1.0,), "elastic_share": (-1.0,)}
     return Policy(shapes={**shapes, **own}, begins=("bent_at_rest",))
 
 
@@ -193,6 +193,7 @@ WHOLE = (
 BETWEEN = (
     "bend",
     "dahl_exponent",
+    "elastic_share",
     "counted_share",
     "drive_stays_share",
     "quadratic_share",

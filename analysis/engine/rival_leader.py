@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from analysis.engine.all_samples import (
     AS_LIKELY,
     WORTH_IT,
@@ -77,10 +79,24 @@ class RivalLeader(Leader):
             found = lead_instead(self._samples, best, known, name)
             if found is not None:
                 self._keep(found)
+                self._lead_kin_anew(found)
                 if cost_of(self._best) < cost_of(best) - BEHIND:
                     # What is that much closer has kin of its own, and is the better place to begin.
                     self._lead_kin(self._best)
                     return
+
+    def _lead_kin_anew(self, found: Followed) -> None:
+        """Another law by growing windows, where neither that nor the best explains to the noise.
+
+        A law that is not what is there bends parameters, from where another comes to a hollow.
+        """
+        if self._near or has_several(self._system) or found.state is None or not found.to_end:
+            return
+        least = noise_of(self._system)
+        if min(found.left, self._best.left) < least or self._effort > self._most:
+            return
+        start, ahead = np.zeros_like(found.nuisance), self._best.costs
+        self._keep(follow_ring(self._system, start, found.state, everything=True, ahead=ahead))
 
     def _lead_alike(self, others: Sequence[Guess]) -> None:
         """Laws of the best's kind in all places alike, where it leaves more than noise.

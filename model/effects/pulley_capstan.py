@@ -6,6 +6,7 @@ from model.library.bristle import (
     BENT_AT_REST,
     BRISTLE_LOSS,
     DAHL_EXPONENT,
+    ELASTIC_SHARE,
     LONGEST_STEP_S,
     bent,
     held,
@@ -30,6 +31,7 @@ def pull(
     loaded_share: Any,
     bristle_loss_s: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -38,8 +40,12 @@ def pull(
 ) -> Any:
     """T (exp(mu theta (h(z) + t_b z')/g) - 1), less what it holds at rest."""
     level = _level(loaded_share, before_pulley, pretension)
-    turned = held(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
-    rate = bent(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
+    turned = held(
+        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
+    )
+    rate = bent(
+        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
+    )
     grip = friction * wrap_rad
     now = _more(grip * (turned + bristle_loss_s * rate) / level)
     return before_pulley * now - pretension * _more(grip * bent_at_rest)
@@ -54,6 +60,7 @@ def rates(
     presliding_m: Any,
     loaded_share: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -62,7 +69,9 @@ def rates(
 ) -> Any:
     """Z follows g sgn v within x_s."""
     level = _level(loaded_share, before_pulley, pretension)
-    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
+    return bent(
+        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
+    )
 
 
 def steepest(
@@ -82,8 +91,10 @@ EFFECT = Effect(
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
     equation="T += T (exp(mu theta (h + t_b z')/g) - 1) - T_0 (exp(mu theta z_0) - 1), "
-    "z' = v d^a/y, d = 1 - z sgn v/g, g = l + (1 - l) T/T_0, "
-    "h = w z + (1 - w) g sgn v, w = x_s/y, y = (x_s^4 + (c v t)^4)^(1/4), c t = (3 a - 2) 0.5 ms",
+    "z' = v D/y, D = min(d, 1 - e)^a/m, m = min(1 - e, 1), "
+    "d = 1 - z sgn v/g, g = l + (1 - l) T/T_0, "
+    "h = w z + (1 - w) g sgn v, w = x_s/y, "
+    "y = (x_s^4 + (c v t)^4)^(1/4), c t = (3 a - 2) 0.5 ms / m",
     source="Euler-Eytelwein; Johnson, Contact Mechanics (1985), Section 8.2",
     signature="step at reversal that grows with T: even harmonics, 2nd 0.85 mu theta k A; scales "
     "with the pretension",
@@ -94,6 +105,7 @@ EFFECT = Effect(
         Parameter("loaded_share", "1", 1.0, 0.0, 1.0, "l: 1, load makes a bristle stiffer; 0: not"),
         BRISTLE_LOSS,
         DAHL_EXPONENT,
+        ELASTIC_SHARE,
         BENT_AT_REST,
     ),
     states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),

@@ -2,14 +2,13 @@
 
 from typing import Any
 
-import numpy as np
-
 from model.library.bristle import (
     BENT_AT_REST,
     BRISTLE_LOSS,
     DAHL_EXPONENT,
+    ELASTIC_SHARE,
     bent,
-    eased,
+    gives,
     steepest,
     stiffest,
 )
@@ -25,18 +24,19 @@ def rates(
     presliding_m: Any,
     far_share: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
     stiffness: Any,
 ) -> Any:
-    """Give z' = s' (1 - z sgn v)^a / x_s, with s' the share of v that reaches the slider."""
+    """Give z' = s' D / x_s, with s' the share of v that reaches the slider."""
     z = bristle + bent_at_rest
     toward = 1.0 - z * smooth_sign(axial_velocity, ROUNDING_M_PER_S)
-    toward = toward * eased(np.abs(toward), dahl_exponent)
+    toward = gives(toward, dahl_exponent, elastic_share)
     held = coulomb_n * far_share * (1.0 - far_share) * toward / (presliding_m * stiffness)
     slip = far_share * axial_velocity / (1.0 + held)
-    return bent(z, slip, presliding_m, 1.0, dahl_exponent)
+    return bent(z, slip, presliding_m, 1.0, dahl_exponent, elastic_share)
 
 
 def behind(
@@ -45,6 +45,7 @@ def behind(
     far_share: Any,
     bristle_loss_s: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -56,6 +57,7 @@ def behind(
         presliding_m,
         far_share,
         dahl_exponent,
+        elastic_share,
         bent_at_rest,
         bristle,
         axial_velocity,
@@ -70,6 +72,7 @@ def pull(
     far_share: Any,
     bristle_loss_s: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -82,6 +85,7 @@ def pull(
         far_share,
         bristle_loss_s,
         dahl_exponent,
+        elastic_share,
         bent_at_rest,
         bristle,
         axial_velocity,
@@ -93,9 +97,10 @@ EFFECT = Effect(
     name="pulley_presliding",
     title="presliding friction at the pulley, cable elastic on both sides",
     acts=Acts.PULLEY,
-    equation="T += r F_c (z - z_0 + t_b z'), z' = s' d^a/y, d = 1 - z sgn v, s' = r v / "
-    "(1 + F_c r (1-r) d^a/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, "
-    "y = (x_s^4 + (c s' t)^4)^(1/4), c t = (3 a - 2) 0.5 ms",
+    equation="T += r F_c (z - z_0 + t_b z'), z' = s' D/y, "
+    "D = min(d, 1 - e)^a/m, m = min(1 - e, 1), d = 1 - z sgn v, s' = r v / "
+    "(1 + F_c r (1-r) D/(k x_s)); r = k/k_far, 1/k = 1/k_span + 1/k_far, "
+    "y = (x_s^4 + (c s' t)^4)^(1/4), c t = (3 a - 2) 0.5 ms / m",
     source="Dahl, Aerospace Corp. TOR-0158 (1968); Canudas de Wit et al., IEEE TAC 40 (1995) 419",
     signature="rounded reversal; a loop at small amplitude; below x_s it looks like stiffness",
     parameters=(
@@ -104,6 +109,7 @@ EFFECT = Effect(
         Parameter("far_share", "1", 1.0, 0.05, 1.0, "r: the give beyond the pulley, of all"),
         BRISTLE_LOSS,
         DAHL_EXPONENT,
+        ELASTIC_SHARE,
         BENT_AT_REST,
     ),
     states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),

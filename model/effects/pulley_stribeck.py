@@ -6,6 +6,7 @@ from model.library.bristle import (
     BENT_AT_REST,
     BRISTLE_LOSS,
     DAHL_EXPONENT,
+    ELASTIC_SHARE,
     LONGEST_STEP_S,
     bent,
     held,
@@ -21,13 +22,16 @@ def rates(
     stribeck_m_per_s: Any,
     presliding_m: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
     """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2)."""
     level = _level(static_ratio, stribeck_m_per_s, axial_velocity)
-    return bent(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
+    return bent(
+        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
+    )
 
 
 def _level(static_ratio: Any, stribeck_m_per_s: Any, axial_velocity: Any) -> Any:
@@ -42,6 +46,7 @@ def pull(
     presliding_m: Any,
     bristle_loss_s: Any,
     dahl_exponent: Any,
+    elastic_share: Any,
     bent_at_rest: Any,
     bristle: Any,
     axial_velocity: Any,
@@ -52,12 +57,15 @@ def pull(
         stribeck_m_per_s,
         presliding_m,
         dahl_exponent,
+        elastic_share,
         bent_at_rest,
         bristle,
         axial_velocity,
     )
     level = _level(static_ratio, stribeck_m_per_s, axial_velocity)
-    now = held(bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent)
+    now = held(
+        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
+    )
     return coulomb_n * (now - bent_at_rest + bristle_loss_s * rate)
 
 
@@ -65,9 +73,11 @@ EFFECT = Effect(
     name="pulley_stribeck",
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (h - z_0 + t_b z'), z' = v d^a/y, d = 1 - z sgn v/g, "
+    equation="T += F_c (h - z_0 + t_b z'), z' = v D/y, D = min(d, 1 - e)^a/m, m = min(1 - e, 1), "
+    "d = 1 - z sgn v/g, "
     "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), "
-    "h = w z + (1 - w) g sgn v, w = x_s/y, y = (x_s^4 + (c v t)^4)^(1/4), c t = (3 a - 2) 0.5 ms",
+    "h = w z + (1 - w) g sgn v, w = x_s/y, "
+    "y = (x_s^4 + (c v t)^4)^(1/4), c t = (3 a - 2) 0.5 ms / m",
     source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
     "Automatica 30 (1994) 1083",
     signature="spike at velocity reversal, negative slope after it; higher odd harmonics than "
@@ -79,6 +89,7 @@ EFFECT = Effect(
         Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
         DAHL_EXPONENT,
+        ELASTIC_SHARE,
         BENT_AT_REST,
     ),
     states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),

@@ -32,14 +32,22 @@ DAHL_EXPONENT = Parameter(
 )
 """Of 1 - z sgn v (Dahl, AIAA J. 14 (1976) 1675): 1 in LuGre's law, 1.5 of ball bearings."""
 
+ELASTIC_SHARE = Parameter(
+    "elastic_share", "1", -1.0, -1.0, 0.7, "e: up to this share of where it slips a bristle springs"
+)
+"""-1: never (LuGre); 0: as it is bent back (Bouc and Wen with beta = gamma); above that, until it
+yields (Dupont et al., IEEE Trans. Autom. Control 47 (2002) 787)."""
+
 BENT_AT_REST = Parameter(
     "bent_at_rest", "1", 0.0, -1.0, 1.0, "z_0, z at rest; what it holds there is pretension"
 )
 """The state of a bristle is z - z_0, which begins at zero: whatever came before left it bent."""
 
 
-def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any) -> Any:
-    """Give z' = v (1 - s z/g)^a / (x_s^4 + (c v t)^4)^(1/4), with s = sgn v and c = 3 a - 2.
+def bent(
+    bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any, elastic: Any
+) -> Any:
+    """Give z' = v D / (x_s^4 + (c v t)^4)^(1/4), with D as `gives` has it of d = 1 - z sgn v / g.
 
     Parameters
     ----------
@@ -53,10 +61,28 @@ def bent(bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any) 
         g, the friction at this speed over the constant one.
     exponent
         a, from 1 to 2.
+    elastic
+        e, from -1 to 0.7.
     """
     size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
-    toward = slip - size * bristle / level
-    return toward * eased(np.abs(toward) / size, exponent) / _way(size, presliding_m, exponent)
+    toward = slip / size - bristle / level
+    return size * gives(toward, exponent, elastic) / _way(size, presliding_m, exponent, elastic)
+
+
+def gives(toward: Any, exponent: Any, elastic: Any) -> Any:
+    """Give D = min(d, 1 - e)^a / min(1 - e, 1): how fast a bristle is bent, over how fast at rest.
+
+    Parameters
+    ----------
+    toward
+        d, with the sign of the slip: how far a bristle is from where it slips, over how far
+        constant friction bends it.
+    exponent, elastic
+        As for `bent`.
+    """
+    most = 1.0 - elastic
+    near = np.minimum(np.maximum(toward, -most), most)
+    return near * eased(np.abs(near), exponent) / np.minimum(most, 1.0)
 
 
 def eased(toward: Any, exponent: Any) -> Any:
@@ -76,7 +102,9 @@ def eased(toward: Any, exponent: Any) -> Any:
     return (1.0 - more) * (1.0 - 2.0 * more) + eases
 
 
-def held(bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any) -> Any:
+def held(
+    bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any, elastic: Any
+) -> Any:
     """What a bristle that is bent by z holds: w of z, and 1 - w of g sgn v, which it turns to.
 
     With w = x_s / (x_s^4 + (c v t)^4)^(1/4) that is, to first order of t, what a bristle would hold
@@ -84,20 +112,20 @@ def held(bristle: Any, slip: Any, presliding_m: Any, level: Any, exponent: Any) 
 
     Parameters
     ----------
-    bristle, slip, presliding_m, level, exponent
+    bristle, slip, presliding_m, level, exponent, elastic
         As for `bent`.
     """
     size = np.sqrt(slip * slip + CREEP_M_PER_S * CREEP_M_PER_S)
-    sticks = presliding_m / _way(size, presliding_m, exponent)
+    sticks = presliding_m / _way(size, presliding_m, exponent, elastic)
     return sticks * bristle + (1.0 - sticks) * level * slip / size
 
 
-def _way(size: Any, presliding_m: Any, exponent: Any) -> Any:
+def _way(size: Any, presliding_m: Any, exponent: Any, elastic: Any) -> Any:
     """(x_s^4 + (c v t)^4)^(1/4): the way that bends a bristle, however slow it may turn over, m.
 
-    It turns over fastest as it is bent back, c times as fast as LuGre's.
+    It turns over fastest as it is bent back, c times as fast as LuGre's: (3 a - 2) / min(1 - e, 1).
     """
-    caught = (3.0 * exponent - 2.0) * CATCHES_S * size
+    caught = (3.0 * exponent - 2.0) * CATCHES_S * size / np.minimum(1.0 - elastic, 1.0)
     stuck, slid = presliding_m * presliding_m, caught * caught
     return np.sqrt(np.sqrt(stuck * stuck + slid * slid))
 

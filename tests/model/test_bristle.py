@@ -1,11 +1,14 @@
 """The bristle by which friction sticks, and the smooth laws beside it."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from cdpr8.rigfile import Excitation, load_rig, packaged_rig_path
 from model import ActiveEffect, simulate
-from model.library.bristle import bent, eased, held
+from model.library.bristle import bent, eased, gives, held
 from model.library.discovery import library
 from model.library.smooth import gaussian
 from tests.model.harness import cable_response
@@ -131,10 +134,10 @@ def test_friction_that_slips_is_what_a_bristle_without_delay_holds(
     missed, late = [], []
     for v, g in zip(slip.tolist(), level.tolist(), strict=True):
         late.append(ours - exact)
-        missed.append(held(ours, v, presliding_m, g, exponent) - exact)
+        missed.append(held(ours, v, presliding_m, g, exponent, -1.0) - exact)
         toward = 1.0 - exact / (g if v >= 0.0 else -g)
         exact += step_s * v * np.sign(toward) * abs(toward) ** exponent / presliding_m
-        ours += step_s * bent(ours, v, presliding_m, g, exponent)
+        ours += step_s * bent(ours, v, presliding_m, g, exponent, -1.0)
     rms = [float(np.sqrt(np.mean(np.square(one)))) for one in (missed, late)]
     assert rms[0] < most
     assert rms[0] < rms[1]
@@ -146,3 +149,53 @@ def test_a_bristle_eases_as_by_dahls_exponent(exponent: float) -> None:
     off = toward * eased(toward, exponent) - toward**exponent
     exact = 2.0 * exponent % 1.0 == 0.0
     assert np.abs(off).max() < (1e-12 if exact else 0.02)
+
+
+def _slid(law: Callable[[float, float], float]) -> NDArray[np.float64]:
+    """A bristle that slides to and fro by short steps, after a turn: z' = law(z, sgn v) |v|."""
+    step_s = 2e-6
+    time_s = np.arange(0.0, 0.5, step_s)
+    z, found = 0.0, np.empty_like(time_s)
+    for i, v in enumerate((3e-3 * np.sin(2.0 * np.pi * 4.0 * time_s)).tolist()):
+        found[i] = z
+        z += step_s * abs(v) * law(z, 1.0 if v >= 0.0 else -1.0)
+    return found[time_s > 0.25]
+
+
+WAY_M = 5e-5
+
+
+def _ours(elastic: float) -> Callable[[float, float], float]:
+    return lambda z, sign: float(gives(sign * (1.0 - z * sign), 1.0, elastic) / WAY_M)
+
+
+def test_bouc_wens_law_springs_as_it_is_bent_back() -> None:
+    """Wen, J. Eng. Mech. Div. 102 (1976) 249, with beta = gamma = 0.5 and n = 1."""
+    wen = _slid(lambda z, sign: (sign - 0.5 * abs(z) * sign - 0.5 * z) / WAY_M)
+    assert _slid(_ours(0.0)) == pytest.approx(wen, abs=1e-3)
+
+
+def test_an_elasto_plastic_bristle_is_met_far_closer_than_by_lugres_law() -> None:
+    """Dupont et al., IEEE Trans. Autom. Control 47 (2002) 787, elastic below 0.45."""
+
+    def dupont(z: float, sign: float) -> float:
+        way = abs(z)
+        if z * sign <= 0.0 or way <= 0.45:
+            return sign / WAY_M
+        yields = 0.5 + 0.5 * np.sin(np.pi * (way - 0.725) / 0.55) if way < 1.0 else 1.0
+        return float(sign * (1.0 - yields * way) / WAY_M)
+
+    exact = _slid(dupont)
+    lugre, elastic = (np.std(_slid(_ours(share)) - exact) for share in (-1.0, 0.6))
+    assert elastic < 0.25 * lugre
+
+
+@pytest.mark.parametrize("name", FRICTIONS)
+def test_a_bristle_that_springs_is_as_stiff_at_rest_as_one_that_does_not(name: str) -> None:
+    effect = library()[name]
+    numbers = {one.name: one.default for one in effect.parameters}
+    amplitude_m = 0.02 * numbers["presliding_m"]
+    always, never = (
+        cable_response(effect, {"elastic_share": share}, amplitude_m) for share in (0.6, -1.0)
+    )
+    assert always.in_phase[1] == pytest.approx(never.in_phase[1], rel=0.05)
