@@ -12,6 +12,7 @@ from analysis.diagnosis.policies import (
     GROWING,
     LAW,
     LINEAR,
+    LOW_IS,
     NUMBER,
     POLICIES,
     WHOLE,
@@ -78,7 +79,7 @@ def _plain(effect: Effect, policy: Policy, records: int) -> Candidate:
     shapes = tuple(
         Shape(one.name, one.unit, one.default, one.low, one.high,
               policy.shapes[one.name], logarithmic=one.low > 0.0, whole=one.name in WHOLE,
-              between=one.name in BETWEEN)
+              between=one.name in BETWEEN, low_is=LOW_IS.get(one.name, ""))
         for one in effect.parameters
         if one.name in policy.shapes
     )  # fmt: skip

@@ -214,5 +214,8 @@ BETWEEN = (
 servo, a grip or a post, to one that is too quick to be seen; a gap, to one at whose end the hook
 hangs."""
 
+LOW_IS = {"static_ratio": "pulley_coulomb"}
+"""Shapes at whose low end a law is another: that sticks no harder than it slips."""
+
 GROWING = ("camera_exposure", "cable_sag", "cable_end_forcing")
 """What it does goes with the square of its magnitude."""

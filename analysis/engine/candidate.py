@@ -2,6 +2,10 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import log
+
+AT_END = 0.02
+"""Of a shape's range: a value that is as near to an end is there."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,8 @@ class Shape:
         where that is on, and may well come to the end of its range. "": it belongs to all.
     between
         It leads from one law to another: at the end of its range it is one of them.
+    low_is
+        And where that is its low end, this candidate, if it is not "".
     """
 
     name: str
@@ -71,6 +77,13 @@ class Shape:
     finest: float = 0.0
     term: str = ""
     between: bool = False
+    low_is: str = ""
+
+    def is_low(self, value: float) -> bool:
+        """Whether a value is at the low end of the range, within `AT_END` of that."""
+        if self.logarithmic:
+            return log(value / self.low) < AT_END * log(self.high / self.low)
+        return value - self.low < AT_END * (self.high - self.low)
 
 
 @dataclass(frozen=True)

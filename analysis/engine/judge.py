@@ -123,12 +123,13 @@ def judge(
     shown = {name for one in fitted for name in one.hypothesis.names if candidates[name].shown}
     shown = shown if lost else set()
     lacking = [not shown <= set(one.hypothesis.names) for one in fitted]
-    scores[_idle(fitted, scores, candidates) | np.array(lacking)] = -np.inf
+    idle = _idle(fitted, scores, candidates) | _is_another(fitted, scores, candidates)
+    scores[idle | np.array(lacking)] = -np.inf
     null = next(one for one in fitted if not one.hypothesis.parts)
     if settled:
-        idle = [any(within_sigma(one, name) for name in one.hypothesis.names) for one in fitted]
+        unsure = [any(within_sigma(one, name) for name in one.hypothesis.names) for one in fitted]
         hardly = [hardly_explains(one, null) for one in fitted]
-        scores[np.logical_or(idle, hardly)] = -np.inf
+        scores[np.logical_or(unsure, hardly)] = -np.inf
     nothing = nothing if np.isfinite(nothing) else scores.max()
     scores = _moved(scores, fitted, candidates, moved or {}, nothing)
     weights = weights_of(scores, fitted, candidates, nothing, noise, settled=settled)
@@ -236,6 +237,23 @@ def _idle(
         for name in negligible(one, candidates):
             without = best[one.hypothesis.without(name).names]
             found[i] |= bool(scores[i] < without + STANDS_OUT)
+    return found
+
+
+def _is_another(
+    fitted: Sequence[Fitted], scores: Array, candidates: Mapping[str, Candidate]
+) -> NDArray[np.bool_]:
+    """Hypotheses with a law that came to where it is another one, with which they are as likely."""
+    found = np.zeros(len(fitted), dtype=bool)
+    for i, one in enumerate(fitted):
+        for name, part in one.hypothesis.parts.items():
+            for shape in candidates[name].shapes:
+                if shape.low_is and shape.is_low(part.shapes.get(shape.name, shape.default)):
+                    names = {*one.hypothesis.names, shape.low_is} - {name}
+                    found[i] |= any(
+                        {*other.hypothesis.names} == names and score >= scores[i]
+                        for other, score in zip(fitted, scores, strict=True)
+                    )
     return found
 
 

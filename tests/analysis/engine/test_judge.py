@@ -71,6 +71,22 @@ def test_a_cause_in_one_place_or_another_is_likelier_than_what_is_in_one(
     assert said.chosen is fits[2]
 
 
+@pytest.mark.parametrize(("moment", "verdict"), [(0.1, "explained"), (4.0, "ambiguous")])
+def test_a_law_that_came_to_where_it_is_another_is_no_rival_of_that(
+    refiner: Refiner, moment: float, verdict: str
+) -> None:
+    begins = replace(STEP.shapes[0], low_is="damping")
+    known = CANDIDATES | {"step": replace(STEP, shapes=(begins,))}
+    fits = [
+        fitted(refiner, state_of(DAMPING, 0.2), -10.0, 1.02),
+        fitted(refiner, state_of(STEP, 1.0, moment=moment), -10.5, 1.02),
+        fitted(refiner, None, -100.0, 50.0),
+    ]
+    said = judge(fits, known)
+    assert said.verdict == verdict
+    assert said.causes[0].name == "damping"
+
+
 @pytest.mark.parametrize(("numbers", "verdict"), [(2, "parameter"), (6, "ambiguous")])
 def test_a_dozen_coordinates_would_explain_anything(
     refiner: Refiner, numbers: int, verdict: str
