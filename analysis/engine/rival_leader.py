@@ -38,6 +38,9 @@ BENT, FAR_BENT = 100.0, 1000.0
 """Parameters of one kind whose squares come to more than this, in sigmas, stand for a cause: beside
 what explains to the noise, and beside what does not."""
 
+NEARLY = 1.5
+"""What leaves no more than so many times what the best does, squared, came nearly as far."""
+
 CLOSE = 60.0
 """What came as close as this, in squared misfit, may have been in places that are as wrong."""
 
@@ -88,14 +91,17 @@ class RivalLeader(Leader):
     def _lead_kin_anew(self, found: Followed) -> None:
         """Another law by growing windows, where neither that nor the best explains to the noise.
 
-        A law that is not what is there bends parameters, from where another comes to a hollow.
+        A law that is not what is there bends parameters, and from there another that comes nearly
+        as far may have come to a hollow.
         """
         if self._near or has_several(self._system) or found.state is None or not found.to_end:
             return
-        least = noise_of(self._system)
-        if min(found.left, self._best.left) < least or self._effort > self._most:
+        best, least = self._best, noise_of(self._system)
+        if min(found.left, best.left) < least or self._effort > self._most:
             return
-        start, ahead = np.zeros_like(found.nuisance), self._best.costs
+        if not self._arrives(best.misfit) or found.misfit > NEARLY * best.misfit:
+            return
+        start, ahead = np.zeros_like(found.nuisance), best.costs
         self._keep(follow_ring(self._system, start, found.state, everything=True, ahead=ahead))
 
     def _lead_alike(self, others: Sequence[Guess]) -> None:
