@@ -150,7 +150,8 @@ def other_cables(cause: Cause) -> list[list[int]]:
     known = [cables_of(cause)]
     for values in cause.elsewhere:
         other = cables_of(replace(cause, values=values, sigmas={}))
-        if other not in known:
+        # What came to nothing in every cable is nowhere else.
+        if other and other not in known:
             known.append(other)
     return known[1:]
 

@@ -46,6 +46,10 @@ ARRIVED = 2.5
 """What was led to the end speaks for every sample, where no more than this is left of the squared
 misfit of one, on average: laws are not exact."""
 
+A_CAUSE = 10.0
+"""What brings no more than this, in squared misfit, is not led on from: beforehand a cause more is
+less likely by about twice as much."""
+
 SLIGHTLY = 0.01
 """And where more is left, but no more than `GOES_ON`, nor, as an amplitude, than this of what
 parameters alone leave: laws that explain most are not exact to the noise."""
@@ -134,7 +138,13 @@ class Leader:
 
     @property
     def _best(self) -> Followed:
-        return min(self._led, key=farthest_first, default=self._nothing)
+        """What led farthest, and there is closest; a cause more counts where it is worth it."""
+
+        def last(led: Followed) -> tuple[float, float]:
+            share, cost = farthest_first(led)
+            return share, cost + A_CAUSE * len(led.names)
+
+        return min(self._led, key=last, default=self._nothing)
 
     def _lead(self, nuisance: Array, state: State, *, near: bool, passed: float = 0.0) -> None:
         self._begun.append(state)

@@ -94,7 +94,7 @@ class RivalLeader(Leader):
         A law that is not what is there bends parameters, and from there another that comes nearly
         as far may have come to a hollow.
         """
-        if self._near or has_several(self._system) or found.state is None or not found.to_end:
+        if self._near or has_several(self._system) or len(found.names) != 1 or not found.to_end:
             return
         best, least = self._best, noise_of(self._system)
         if min(found.left, best.left) < least or self._effort > self._most:

@@ -43,7 +43,7 @@ def test_cables_where_it_might_as_well_be_are_told_once_each() -> None:
     upper = {f"coulomb_n@{k}": 0.2 for k in (1, 2, 3, 4)}
     every = {f"coulomb_n@{k}": 0.15 for k in range(1, 9)}
     one_large = {"coulomb_n@2": 0.5, "coulomb_n@7": 0.01}
-    elsewhere = (every, upper, one_large, dict(every))
+    elsewhere = (every, upper, one_large, dict(every), dict.fromkeys(every, 0.0))
     found = replace(cause(upper, 0.02), elsewhere=elsewhere)
     assert other_cables(found) == [[1, 2, 3, 4, 5, 6, 7, 8], [2]]
     assert other_cables(cause(upper, 0.02)) == []
