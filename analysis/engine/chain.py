@@ -140,7 +140,9 @@ class _Chain:
         if nearest not in self._asked or self._asked[nearest][0] is not told:
             self._asked[nearest] = told, _led(part, told.at, known)
         _, (found, information) = self._asked[nearest]
-        arrived, early = _arrived(found, known), found.share < EARLY
+        arrived = _arrived(found, known)
+        # What a law that is not exact leaves may be much early on, and nothing is lost by it.
+        early = found.share < EARLY and (not arrived or _leaves(part, found))
         lost = early or (not arrived and not self._left)
         if lost and len(self._aside) < self._most_aside:
             self._aside.append(nearest)

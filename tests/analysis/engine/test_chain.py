@@ -1,6 +1,7 @@
 """One recording after the other: what each tells is what all of them tell at once."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,11 +9,14 @@ import pytest
 
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle, Segment
-from analysis.engine.candidate import Candidate
+from analysis.engine.candidate import Candidate, Term
 from analysis.engine.chain import Chained, chained
 from analysis.engine.cycles import valley
+from analysis.engine.hypothesis import Hypothesis
+from analysis.engine.hypothesis import Part as PartOf
 from analysis.engine.part import Part
 from analysis.engine.ring_fit import follow_ring
+from analysis.engine.state import State
 from analysis.engine.system import Nuisance, Point, Prediction
 
 T_S = np.arange(0.0, 10.0, 0.02)
@@ -58,9 +62,36 @@ class Straight:
         return np.asarray(told[:, None])
 
 
-def lead(system: Straight, record: str) -> Chained:
+LAW = Candidate("law", "law", "plant", (Term("size", "size", "V", "", 0.0, 10.0, 0.1),))
+
+
+class Inexact(Straight):
+    """The same with a law on, of a form that is off while the motion begins."""
+
+    candidates = (LAW,)
+
+    def __init__(self) -> None:
+        super().__init__()
+        waves = np.sin(2.0 * np.pi * np.array([[7.3], [11.1], [13.7]]) * T_S).sum(axis=0)
+        off = 0.72 * NOISE * np.where(T_S < 3.0, waves, 0.0)
+        added = np.cos(2.0 * np.pi * 3.1 * T_S) + off
+        self.bundles = tuple(replace(one, value=one.value + added[:, None]) for one in self.bundles)
+
+    def simulate(self, points: Sequence[Point], reduce: Callable[[Prediction], Any]) -> list[Any]:
+        """See `System`."""
+        found = []
+        for point in points:
+            on = point.effects.get("law")
+            size = 0.0 if on is None else on.values["size"]
+            added = size * np.cos(2.0 * np.pi * 3.1 * T_S)[:, None]
+            seen = [self._one(point.nuisance, k) + added for k in range(len(NAMES))]
+            found.append(reduce(seen))
+        return found
+
+
+def lead(system: Straight, record: str, state: State | None = None) -> Chained:
     part = Part(system, (record,))
-    first = follow_ring(part, np.zeros(len(part.nuisances)), everything=True)
+    first = follow_ring(part, np.zeros(len(part.nuisances)), state, everything=True)
     return chained(system, valley(part, first), (record,), np.zeros(len(system.nuisances)))
 
 
@@ -88,6 +119,14 @@ def test_a_recording_of_another_machine_is_said_to_be_the_one_that_does_not_fit(
     found = lead(Straight(other="three"), "one")
     assert found.stuck == "three"
     assert sorted(found.led) == ["four", "one", "two"]
+
+
+def test_a_law_that_is_not_exact_early_on_is_led_through() -> None:
+    law = Hypothesis({"law": PartOf(("size",))})
+    found = lead(Inexact(), "one", State.at(law, {("law", "size"): 0.9}, {"law": LAW}))
+    assert (found.stuck, found.aside) == ("", ())
+    assert found.followed.state is not None
+    assert found.followed.state.values[0] == pytest.approx(1.0, abs=0.02)
 
 
 def test_what_parts_tell_is_kept_of_the_numbers_of_others_too() -> None:
