@@ -101,7 +101,10 @@ POLICIES: dict[str, Policy] = {
     "pulley_capstan": _friction(presliding_m=(5e-5,), loaded_share=(0.5,)),
     "pulley_presliding": _friction(presliding_m=(6e-4, 2.4e-3)),
     "pulley_stribeck": _friction(
-        static_ratio=(1.4,), stribeck_m_per_s=(0.008,), presliding_m=(5e-5,)
+        static_ratio=(1.4,),
+        stribeck_m_per_s=(0.008,),
+        tail_share=(0.0,),
+        presliding_m=(5e-5,),
     ),
     # Where it is tied on is told once it is there.
     "umbilical": Policy(
@@ -194,6 +197,7 @@ BETWEEN = (
     "bend",
     "dahl_exponent",
     "elastic_share",
+    "tail_share",
     "counted_share",
     "drive_stays_share",
     "quadratic_share",

@@ -20,6 +20,7 @@ from model.library.smooth import gaussian
 def rates(
     static_ratio: Any,
     stribeck_m_per_s: Any,
+    tail_share: Any,
     presliding_m: Any,
     dahl_exponent: Any,
     elastic_share: Any,
@@ -27,22 +28,25 @@ def rates(
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
-    """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2)."""
-    level = _level(static_ratio, stribeck_m_per_s, axial_velocity)
+    """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) ((1 - q) exp(-u^2) + q/(1 + u^2)), u = v/v_st."""
+    level = _level(static_ratio, stribeck_m_per_s, tail_share, axial_velocity)
     return bent(
         bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
     )
 
 
-def _level(static_ratio: Any, stribeck_m_per_s: Any, axial_velocity: Any) -> Any:
+def _level(static_ratio: Any, stribeck_m_per_s: Any, tail_share: Any, axial_velocity: Any) -> Any:
     """g: F_s / F_c where the cable all but stands, 1 where it slips."""
-    return 1.0 + (static_ratio - 1.0) * gaussian(axial_velocity / stribeck_m_per_s)
+    times = axial_velocity / stribeck_m_per_s
+    falls = (1.0 - tail_share) * gaussian(times) + tail_share / (1.0 + times * times)
+    return 1.0 + (static_ratio - 1.0) * falls
 
 
 def pull(
     coulomb_n: Any,
     static_ratio: Any,
     stribeck_m_per_s: Any,
+    tail_share: Any,
     presliding_m: Any,
     bristle_loss_s: Any,
     dahl_exponent: Any,
@@ -55,6 +59,7 @@ def pull(
     rate = rates(
         static_ratio,
         stribeck_m_per_s,
+        tail_share,
         presliding_m,
         dahl_exponent,
         elastic_share,
@@ -62,7 +67,7 @@ def pull(
         bristle,
         axial_velocity,
     )
-    level = _level(static_ratio, stribeck_m_per_s, axial_velocity)
+    level = _level(static_ratio, stribeck_m_per_s, tail_share, axial_velocity)
     now = held(
         bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
     )
@@ -75,17 +80,18 @@ EFFECT = Effect(
     acts=Acts.PULLEY,
     equation="T += F_c (h - z_0 + t_b z'), z' = v D/y, D = min(d, 1 - e)^a/m, m = min(1 - e, 1), "
     "d = 1 - z sgn v/g, "
-    "g = 1 + (F_s/F_c - 1) exp(-(v/v_st)^2), "
+    "g = 1 + (F_s/F_c - 1) ((1 - q) exp(-u^2) + q/(1 + u^2)), u = v/v_st, "
     "h = w z + (1 - w) g sgn v, w = x_s/y, "
     "y = (x_s^4 + (c v t)^4)^(1/4), c t = (3 a - 2) 0.5 ms / m",
     source="Canudas de Wit et al., IEEE TAC 40 (1995) 419; Armstrong-Helouvry et al., "
-    "Automatica 30 (1994) 1083",
+    "Automatica 30 (1994) 1083; the tail: Hess & Soom, J. Tribol. 112 (1990) 147",
     signature="spike at velocity reversal, negative slope after it; higher odd harmonics than "
     "Coulomb's",
     parameters=(
         Parameter("coulomb_n", "N", 0.3, 0.0, 5.0, "F_c", magnitude=True),
         Parameter("static_ratio", "1", 1.4, 1.0, 3.0, "F_s / F_c"),
         Parameter("stribeck_m_per_s", "m/s", 8e-3, 1e-3, 0.05, "v_st"),
+        Parameter("tail_share", "1", 0.0, 0.0, 1.0, "q: 0, falls as a gaussian; 1: as 1/(1 + u^2)"),
         Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
         BRISTLE_LOSS,
         DAHL_EXPONENT,

@@ -48,6 +48,20 @@ def test_stribecks_curve_is_the_static_force_at_first_and_the_sliding_one_at_las
     assert abs(sliding.force[fastest]) == pytest.approx(0.3, rel=0.02)
 
 
+def test_stribecks_curve_may_fall_as_hess_and_soom_have_it() -> None:
+    effect = library()["pulley_stribeck"]
+    values = {"presliding_m": 2e-5, "bristle_loss_s": 0.0, "stribeck_m_per_s": 0.05}
+    short, long = (
+        cable_response(effect, {**values, "tail_share": share}, 5e-3, 4.0) for share in (0.0, 1.0)
+    )
+    fastest = np.argmax(np.abs(long.rate))
+    times = long.rate[fastest] / 0.05
+    assert abs(long.force[fastest]) == pytest.approx(0.3 * (1.0 + 0.4 / (1.0 + times**2)), rel=0.02)
+    assert abs(short.force[fastest]) == pytest.approx(
+        0.3 * (1.0 + 0.4 * np.exp(-(times**2))), rel=0.02
+    )
+
+
 def test_gaussian_is_what_it_says_and_never_overflows() -> None:
     x = np.linspace(-6.0, 6.0, 2001)
     assert np.abs(gaussian(x) - np.exp(-x * x)).max() < 1e-4
