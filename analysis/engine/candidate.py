@@ -79,11 +79,14 @@ class Shape:
     between: bool = False
     low_is: str = ""
 
+    def counted(self, value: float) -> float:
+        """A value as fits count it: its logarithm, where equal ratios count alike."""
+        return log(value) if self.logarithmic else value
+
     def is_low(self, value: float) -> bool:
         """Whether a value is at the low end of the range, within `AT_END` of that."""
-        if self.logarithmic:
-            return log(value / self.low) < AT_END * log(self.high / self.low)
-        return value - self.low < AT_END * (self.high - self.low)
+        low = self.counted(self.low)
+        return self.counted(value) - low < AT_END * (self.counted(self.high) - low)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The verdict: which causes are there, how sure that is, and what these data cannot tell apart."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,8 +123,7 @@ def judge(
     shown = {name for one in fitted for name in one.hypothesis.names if candidates[name].shown}
     shown = shown if lost else set()
     lacking = [not shown <= set(one.hypothesis.names) for one in fitted]
-    idle = _idle(fitted, scores, candidates) | _is_another(fitted, scores, candidates)
-    scores[idle | np.array(lacking)] = -np.inf
+    scores[_idle(fitted, scores, candidates) | np.array(lacking)] = -np.inf
     null = next(one for one in fitted if not one.hypothesis.parts)
     if settled:
         unsure = [any(within_sigma(one, name) for name in one.hypothesis.names) for one in fitted]
@@ -228,7 +227,11 @@ def _by_itself(cause: Cause, chosen: Fitted, candidate: Candidate) -> float:
 def _idle(
     fitted: Sequence[Fitted], scores: Array, candidates: Mapping[str, Candidate]
 ) -> NDArray[np.bool_]:
-    """Hypotheses with a candidate that is so small, and explains so little, that it is none."""
+    """Hypotheses with a candidate that is no cause of its own.
+
+    It is so small, and explains so little, that it is none; or it came to where it is another one,
+    with which the hypothesis is as likely.
+    """
     found = np.zeros(len(fitted), dtype=bool)
     best: dict[tuple[str, ...], float] = defaultdict(lambda: -np.inf)
     for one, score in zip(fitted, scores, strict=True):
@@ -237,24 +240,17 @@ def _idle(
         for name in negligible(one, candidates):
             without = best[one.hypothesis.without(name).names]
             found[i] |= bool(scores[i] < without + STANDS_OUT)
+        found[i] |= any(best[names] >= scores[i] for names in _others(one, candidates))
     return found
 
 
-def _is_another(
-    fitted: Sequence[Fitted], scores: Array, candidates: Mapping[str, Candidate]
-) -> NDArray[np.bool_]:
-    """Hypotheses with a law that came to where it is another one, with which they are as likely."""
-    found = np.zeros(len(fitted), dtype=bool)
-    for i, one in enumerate(fitted):
-        for name, part in one.hypothesis.parts.items():
-            for shape in candidates[name].shapes:
-                if shape.low_is and shape.is_low(part.shapes.get(shape.name, shape.default)):
-                    names = {*one.hypothesis.names, shape.low_is} - {name}
-                    found[i] |= any(
-                        {*other.hypothesis.names} == names and score >= scores[i]
-                        for other, score in zip(fitted, scores, strict=True)
-                    )
-    return found
+def _others(fitted: Fitted, candidates: Mapping[str, Candidate]) -> Iterator[tuple[str, ...]]:
+    """Names of hypotheses that one is: each with the candidate that one of its laws came to be."""
+    names = set(fitted.hypothesis.names)
+    for name, part in fitted.hypothesis.parts.items():
+        for shape in candidates[name].shapes:
+            if shape.low_is and shape.is_low(part.shapes.get(shape.name, shape.default)):
+                yield tuple(sorted({*names, shape.low_is} - {name}))
 
 
 def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> tuple[str, ...]:

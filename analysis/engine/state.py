@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import exp, log
+from math import exp
 
 import numpy as np
 
@@ -83,10 +83,10 @@ class State:
                 if not shape.whole:
                     at = part.shapes.get(shape.name, shape.default)
                     numbers.append(
-                        Number(name, (), shape, _in(shape, shape.low), _in(shape, shape.high),
+                        Number(name, (), shape, shape.counted(shape.low), shape.counted(shape.high),
                                _shape_step(shape))
                     )  # fmt: skip
-                    values.append(_in(shape, at))
+                    values.append(shape.counted(at))
         # A magnitude that is not free has no difference.
         return cls(hypothesis, candidates, tuple(numbers), np.array(values))
 
@@ -282,7 +282,7 @@ class State:
             row = np.zeros(len(self.free))
             row[k] = 1.0 / number.width
             rows.append(row)
-            off = _in(number.shape, number.shape.default) - self.values[i]
+            off = number.shape.counted(number.shape.default) - self.values[i]
             residuals.append(off / number.width)
         return np.array(residuals), np.array(rows).reshape(len(rows), len(self.free))
 
@@ -312,10 +312,6 @@ class State:
 def _label(number: Number) -> tuple[object, ...]:
     """Equal for numbers that are the same thing in two hypotheses."""
     return number.candidate, number.terms, None if number.shape is None else number.shape.name
-
-
-def _in(shape: Shape, value: float) -> float:
-    return log(value) if shape.logarithmic else value
 
 
 def _out(shape: Shape, value: float) -> float:
