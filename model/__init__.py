@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from model.simulation import Simulation as Simulation
     from model.simulator import simulate as simulate
     from model.task import Disturbance as Disturbance
+    from model.task import Strings as Strings
     from model.task import Task as Task
 
 _DOORS = {
@@ -25,6 +26,7 @@ _DOORS = {
     "Machine": "model.machine",
     "Observation": "model.observation",
     "Simulation": "model.simulation",
+    "Strings": "model.task",
     "Task": "model.task",
     "compile_solver": "model.compiled",
     "jacobian": "model.batch",
@@ -39,6 +41,7 @@ __all__ = [
     "Machine",
     "Observation",
     "Simulation",
+    "Strings",
     "Task",
     "compile_solver",
     "jacobian",

@@ -1,7 +1,7 @@
 """One simulation as asked for, made ready for either kernel."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from inspect import signature
 from typing import Any, Literal, Self
@@ -31,6 +31,9 @@ SHORTEST_STEP_S = 2e-5
 """Steeper friction than this can follow trembles at rest, by less than its own switch."""
 
 DRIVES = ("wrench", "winch")
+
+LEAST_LEFT = 0.05
+"""A cable has some weight, and its string some loss, however far a fit strays."""
 
 THRIFTY = ("dop853", "dp5")
 """Methods that a fit chooses from."""
@@ -65,6 +68,38 @@ NO_DISTURBANCE = Disturbance()
 
 
 @dataclass(frozen=True)
+class Strings:
+    """By how much cables are other strings than the rig file says: what a fit moves.
+
+    Parameters
+    ----------
+    density_share, loss_share
+        rho_w A (1 + e) and c_w (1 + d) of Eq. 17: of every cable, or of each, shape (8,). What
+        would leave less than `LEAST_LEFT` of either leaves that.
+    """
+
+    density_share: float | tuple[float, ...] = 0.0
+    loss_share: float | tuple[float, ...] = 0.0
+
+    def of(self, machine: Machine) -> Machine:
+        """The machine with such cables."""
+        if self == UNCHANGED:
+            return machine
+        return replace(
+            machine,
+            line_density=machine.line_density * _one_and(self.density_share),
+            damping=machine.damping * _one_and(self.loss_share),
+        )
+
+
+def _one_and(share: float | tuple[float, ...]) -> Array:
+    return np.maximum(1.0 + np.asarray(share), LEAST_LEFT)
+
+
+UNCHANGED = Strings()
+
+
+@dataclass(frozen=True)
 class Task:
     """What is to be simulated; the arguments of `model.simulate` that are not its method.
 
@@ -87,6 +122,8 @@ class Task:
         The machine the drive was made for; default: `rig`.
     drive
         "wrench" or "winch"; default: the excitation's.
+    strings
+        What the cables are as strings beside the rig file.
     """
 
     rig: Rig
@@ -97,6 +134,7 @@ class Task:
     disturbance: Disturbance | None = None
     nominal: Rig | None = None
     drive: str | None = None
+    strings: Strings = UNCHANGED
     acting: tuple[ActiveEffect, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -127,7 +165,7 @@ class Task:
     @cached_property
     def machine(self) -> Machine:
         """The plant: the rig's, with the parameters that effects move."""
-        machine = Machine.from_rig(self.rig)
+        machine = self.strings.of(Machine.from_rig(self.rig))
         for one in self.acting:
             if one.effect.change is not None:
                 machine = one.effect.change(machine, **one.columns())

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.machine import RecordedMachine
-from analysis.diagnosis.nuisances import Meaning
+from analysis.diagnosis.nuisances import STRING_KEYS, STRINGS, Meaning
 from analysis.engine.candidate import Setting
 from analysis.engine.diagnosis import Diagnosis
 from analysis.engine.system import Point
@@ -17,6 +17,7 @@ from cdpr8 import CABLES
 from cdpr8.errors import RigFileError, ToolkitError
 from cdpr8.rigfile import load_rig
 from model.library.discovery import library
+from model.task import LEAST_LEFT
 
 Array = NDArray[np.float64]
 
@@ -114,6 +115,11 @@ def _move(
             row = rig.cable[meaning.cable - 1].stiffness_n_per_m
             _set(data["cable"][meaning.cable - 1], "stiffness_n_per_m", row.value * (1 + amount),
                  row.sigma)  # fmt: skip
+        elif meaning.effect == STRINGS and amount:
+            key = STRING_KEYS[meaning.parameter]
+            row = getattr(rig.cable[meaning.cable - 1], key)
+            left = max(1.0 + amount, LEAST_LEFT)
+            _set(data["cable"][meaning.cable - 1], key, row.value * left, row.sigma)
         elif meaning.effect in ("pretension", "mass") and not balanced:
             _add(data, meaning, amount)
         elif meaning.parameter == "pretension_offset_n":

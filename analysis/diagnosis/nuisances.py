@@ -8,6 +8,7 @@ import numpy as np
 from analysis.diagnosis.recording import Recording
 from analysis.engine.system import Nuisance
 from cdpr8.rigfile import Rig
+from cdpr8.rigfile.schema import Cable
 
 DRIVE_SHARE = 2e-3
 """How well the drive makes its amplitude."""
@@ -49,6 +50,12 @@ leave it at rest where the rig file has it, 1, or those of the rig file, 0."""
 POSE_ZERO_M, POSE_ZERO_RAD = 3e-4, 1e-3
 """How well the plate's place on the platform is known."""
 
+STRINGS = "string"
+"""For the effect of a number of a cable that shows in its string alone."""
+
+STRING_KEYS = {"density_share": "line_density_kg_per_m", "loss_share": "damping_1_per_s"}
+"""In which rows of a cable a rig file has what `model.Strings` has shares of."""
+
 EVERY = -1
 """For the number of a run: all of them."""
 
@@ -61,7 +68,8 @@ class Meaning:
     ----------
     effect, parameter
         A number of the library's effect; "start" for the start of the motion, "pose_zero" for the
-        plate's place, "sampling" for the instants at which a cell is read.
+        plate's place, "sampling" for the instants at which a cell is read, "string" for a number
+        of `model.Strings`.
     cable
         1 to 8, or 0.
     record
@@ -100,6 +108,7 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
                 Meaning("sampling", cable=i),
             )
         )
+        found += _of_string(cable, i)
         length = float(np.linalg.norm(cable.base_m.value))
         for axis in "xyz":
             # A far base point that is a little off turns its cable by too little to be seen.
@@ -138,6 +147,17 @@ def nuisances(recordings: Sequence[Recording]) -> tuple[tuple[Nuisance, ...], tu
     )
     columns = list(zip(*found, strict=True))
     return tuple(columns[0]), tuple(columns[1])
+
+
+def _of_string(cable: Cable, number: int) -> Iterator[tuple[Nuisance, Meaning]]:
+    """What a cable weighs and how fast its string dies away: it shows where strings vibrate."""
+    for parameter, key in STRING_KEYS.items():
+        row = getattr(cable, key)
+        if row.sigma > 0.0 and row.value > 0.0:
+            yield (
+                Nuisance(f"{STRINGS} {parameter}@{number}", row.sigma / row.value, "1"),
+                Meaning(STRINGS, parameter, number),
+            )
 
 
 def _of_run(

@@ -153,7 +153,7 @@ def nothing_again(system: System, nothing: Followed, led: Sequence[Followed]) ->
     contends = min(map(cost_of, led), default=0.0) + CONTENDS
     for one in led:
         if one.to_end:
-            start = _parameters_of(system, one)
+            start = parameters_of(system, one, one.names)
             # What nuisances do there, not where parameters alone had come to.
             lent = one.lends or nothing.lends
             alone = follow_ring(
@@ -319,11 +319,27 @@ def farthest_first(led: Followed) -> tuple[float, float]:
     return -share, cost
 
 
-def _parameters_of(system: System, led: Followed) -> Array:
-    """Nuisances that stand for the parameters among what is on, and for nothing else of it."""
+def parameters_of(system: System, led: Followed, names: Sequence[str]) -> Array:
+    """Nuisances where causes are not on: those that are a cause's own stand for it, as far as led.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    led
+        With the causes on.
+    names
+        Of the causes.
+
+    Returns
+    -------
+    Array
+        In sigmas, shape (p,).
+    """
     nuisance = led.nuisance.copy()
     if led.state is not None:
         values = led.state.term_values()
         for i, one in enumerate(system.nuisances):
-            nuisance[i] += values.get((one.cause or "", one.term or ""), 0.0) / one.sigma
+            if one.cause is not None and one.cause in names:
+                nuisance[i] += values.get((one.cause, one.term or ""), 0.0) / one.sigma
     return nuisance

@@ -11,6 +11,7 @@ from analysis.engine.all_samples import (
     farthest_first,
     misfit_at,
     noise_of,
+    parameters_of,
     rise_beside_form,
 )
 from analysis.engine.array import Array
@@ -192,10 +193,11 @@ class MoreLeader(RivalLeader):
             # However much was tried: a second cause may stand for what the first had not been.
             tried = whole.names, state.hypothesis.names
             needed = cost_of(whole) > self._needed.get(tried, np.inf) - BEHIND
-            told = self._is_told(state, close, whole.nuisance)
+            start = parameters_of(self._system, whole, (name,))
+            told = self._is_told(state, close, start)
             if state.hypothesis.names in known or needed or told:
                 continue
-            fewer = lead_from(self._system, whole, state)
+            fewer = lead_from(self._system, whole, state, start)
             rises = cost_of(fewer) - cost_of(whole)
             arrives = fewer.to_end and fewer.left < ARRIVED
             if arrives and rises > max(CLOSE, HOLLOW * whole.rises_without(name)):

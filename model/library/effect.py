@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from inspect import signature
 from typing import Any
 
 Law = Callable[..., Any]
@@ -176,6 +177,11 @@ class Effect:
     stiffest: Law | None = None
     longest_step_s: float | None = None
     cost: str = ""
+
+    def asks_for(self, name: str) -> bool:
+        """Whether a law of its in the kernel asks for this by name, such as "line_density"."""
+        laws = (self.pull, self.behind, self.rates, self.transverse, self.across, self.wrench)
+        return any(law is not None and name in signature(law).parameters for law in laws)
 
     @property
     def per_cable(self) -> bool:

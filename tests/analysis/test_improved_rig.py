@@ -67,6 +67,15 @@ def test_what_is_off_in_all_runs_and_in_the_first_is_in_its_rig_file(tmp_path: P
     )
 
 
+def test_strings_are_numbers_of_the_rig_file(tmp_path: Path) -> None:
+    strings = (Meaning("string", "density_share", 2), Meaning("string", "loss_share", 3))
+    rig, before = load_rig(moved(tmp_path, [0.07, -1.5], 0.0, of=strings)), load_rig()
+    cable, was = rig.cable[1].line_density_kg_per_m, before.cable[1].line_density_kg_per_m
+    assert cable.value == pytest.approx(1.07 * was.value)
+    # A fit may stray to less than none.
+    assert 0.0 < rig.cable[2].damping_1_per_s.value < 0.1 * before.cable[2].damping_1_per_s.value
+
+
 def test_pretensions_that_carry_no_weight_are_what_was_simulated(tmp_path: Path) -> None:
     before, offsets = load_rig(), [3.0, 0.0, -1.0, 0.0, 2.0, 0.0, 0.0, 0.0]
     rig = load_rig(moved(tmp_path, offsets, 0.2))

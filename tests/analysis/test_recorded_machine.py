@@ -12,6 +12,7 @@ from analysis.diagnosis.machine import RecordedMachine
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import seen_by
 from analysis.engine.array import Array
+from analysis.engine.candidate import Setting
 from analysis.engine.system import Point, Ringing, own_nuisances
 from analysis.engine.until import Until
 from cdpr8.rigfile import Excitation
@@ -195,3 +196,27 @@ def test_a_trim_of_several_runs_bends_what_is_off_in_all_of_them(recorded: Recor
     assert both[of >= 0] == pytest.approx(0.0, abs=1e-9)
     asked = machine.bend(here, replace(there, records=(recorded.run.name,)))
     assert asked == pytest.approx(both)
+
+
+def test_what_a_cable_is_as_a_string_is_simulated_where_strings_vibrate(
+    recorded: Recording,
+) -> None:
+    machine = RecordedMachine([recorded], NAMES, workers=1)
+    nominal = Point(np.zeros(len(machine.nuisances)))
+    heavier = nominal.nuisance.copy()
+    for i, one in enumerate(machine.meanings):
+        if one.parameter == "density_share" and one.cable == 5:
+            heavier[i] = 2.0
+            density = recorded.rig.cable[4].line_density_kg_per_m
+    points = [nominal, replace(nominal, nuisance=heavier)]
+    before, after = machine.simulate(points, lambda found: found)
+    one_alone = machine.simulated
+    assert all(np.array_equal(a, b) for a, b in zip(before, after, strict=True))
+    shaken = {"cable_end_forcing": Setting({f"forcing_share@{i}": 1.0 for i in range(1, 9)}, {})}
+    points = [replace(one, effects=shaken) for one in points]
+    before, after = machine.simulate(points, lambda found: found)
+    assert machine.simulated == 3 * one_alone
+    assert max(np.abs(a - b).max() for a, b in zip(before, after, strict=True)) > 1e-3
+    changed = [machine.job(one, 0).task.machine.line_density for one in points]
+    ratio = 1.0 + 2.0 * density.sigma / density.value
+    assert changed[1] / changed[0] == pytest.approx([1, 1, 1, 1, ratio, 1, 1, 1])

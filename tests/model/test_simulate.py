@@ -4,8 +4,10 @@ from scipy.interpolate import CubicSpline
 
 from cdpr8.errors import UsageError
 from cdpr8.rigfile import Excitation, Rig
-from model import Disturbance, Simulation, simulate
+from cdpr8.rigfile.parameter import Scalar
+from model import Disturbance, Simulation, Strings, Task, simulate
 from model.check import free_energy, step_halving
+from model.simulator import run
 
 MIRRORED_CABLES = [1, 0, 3, 2, 7, 6, 5, 4]
 MIRRORED_POSE = np.array([1, -1, 1, -1, 1, -1])
@@ -29,6 +31,31 @@ def test_the_paper_case_starts_in_the_commanded_state(paper_run: Simulation) -> 
     full_rate = np.deg2rad(2.0) * 2 * np.pi * 2.06
     assert paper_run.pose[0].tolist() == [1e-4, 0, 0, 0, 0, 0]
     assert paper_run.pose_rate[0] == pytest.approx([0, 0, 0, 0, full_rate, 0])
+
+
+def test_cables_that_are_other_strings_are_those_of_another_rig_file(rig: Rig) -> None:
+    struck = Disturbance(cable_offset_m=2e-3)
+    heavier = tuple(0.01 * number for number in range(8))
+    found = run(Task(rig, SHORT, disturbance=struck, strings=Strings(heavier, -0.5)))
+    cables = tuple(
+        cable.model_copy(
+            update={
+                "line_density_kg_per_m": scaled(cable.line_density_kg_per_m, 1.0 + share),
+                "damping_1_per_s": scaled(cable.damping_1_per_s, 0.5),
+            }
+        )
+        for cable, share in zip(rig.cable, heavier, strict=True)
+    )
+    other = simulate(rig.model_copy(update={"cable": cables}), SHORT, disturbance=struck)
+    assert found.cable_offset_m == pytest.approx(other.cable_offset_m, abs=1e-12)
+    plain = simulate(rig, SHORT, disturbance=struck)
+    assert np.abs(found.cable_offset_m - plain.cable_offset_m).max() > 1e-4
+    light = Task(rig, strings=Strings(density_share=-2.0)).machine.line_density
+    assert np.all(light > 0.0)
+
+
+def scaled(row: Scalar, factor: float) -> Scalar:
+    return row.model_copy(update={"value": factor * row.value})
 
 
 def test_every_cable_may_have_its_own_offset(rig: Rig) -> None:

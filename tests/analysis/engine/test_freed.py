@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.engine.all_samples import cost_of
+from analysis.engine.all_samples import cost_of, parameters_of
 from analysis.engine.array import Array
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
@@ -97,6 +97,18 @@ def test_each_of_what_came_as_close_as_the_best_is_led_alone() -> None:
     led = len(search._led)
     search._one_less(pair)
     assert len(search._led) == led
+
+
+def test_without_a_cause_that_is_a_parameter_it_begins_where_the_parameter_does_the_same() -> None:
+    system = Detuned(ring(0.0, RATE, 0.0, 0.0))
+    known = {one.name: one for one in system.candidates}
+    pair = freed(system, known, beside_damping(system, OFF), "tone")
+    assert pair.state is not None
+    start = parameters_of(system, pair, ("tone",))
+    alone = Followed(start, pair.state.without("tone"))
+    assert start[0] != pytest.approx(pair.nuisance[0])
+    assert system._one(alone.point) == pytest.approx(system._one(pair.point), abs=1e-12)
+    assert parameters_of(system, pair, ("damping",)) == pytest.approx(pair.nuisance)
 
 
 def test_what_stayed_far_behind_without_a_cause_needs_it_from_about_as_good_a_place() -> None:
