@@ -23,17 +23,17 @@ SMALL_N = 1e-3
 """Step of the differences that tell what a state does that a rate holds at rest: all are forces."""
 
 
-class Rested(NamedTuple):
-    """A state that the elongation of its cable tells at rest.
+class Told(NamedTuple):
+    """A state that the elongation of its cable tells, or its rate.
 
     Parameters
     ----------
     places
         Of the cables' in the state vector, shape (8,).
     law
-        What elongations, shape (..., 8), have made of it.
+        What elongations or their rates, shape (..., 8), have made of it.
     let_go
-        With which share of X_p0 it went along, shape (8,).
+        With which share of what the platform gains at once it goes along, shape (8,).
     """
 
     places: NDArray[np.int64]
@@ -65,9 +65,7 @@ def pack(machine: Machine, effects: Sequence[ActiveEffect]) -> Extras | None:
     return Extras(on, offset, posts(machine)[0], cable_numbers(machine, effects))
 
 
-def resting(
-    extras: Extras | None, effects: Sequence[ActiveEffect], machine: Machine
-) -> list[Rested]:
+def resting(extras: Extras | None, effects: Sequence[ActiveEffect], machine: Machine) -> list[Told]:
     """The states that the elongation of their cables tells at rest.
 
     Parameters
@@ -77,20 +75,29 @@ def resting(
     machine
         The plant.
     """
+    return list(_told_by("elongation", extras, effects, machine))
+
+
+def going(extras: Extras | None, effects: Sequence[ActiveEffect], machine: Machine) -> list[Told]:
+    """The states that gain of a speed that the platform is given at once; see `resting`."""
+    return list(_told_by("elongation_rate", extras, effects, machine))
+
+
+def _told_by(
+    argument: str, extras: Extras | None, effects: Sequence[ActiveEffect], machine: Machine
+) -> Iterator[Told]:
     known = {one.name: one.columns() for one in effects}
-    found: list[Rested] = []
     for first, effect, state in _states(extras):
-        if state.rests is not None:
+        told = state.rests if argument == "elongation" else state.goes
+        if told is not None:
             numbers = {**known[effect.name], "stiffness": machine.stiffness}
-            own = {one: numbers[one] for one in signature(state.rests).parameters if one in numbers}
+            own = {one: numbers[one] for one in signature(told).parameters if one in numbers}
             let_go = numbers.get(LET_GO.name, np.zeros(CABLES))
-            law = partial(_told, state.rests, own)
-            found.append(Rested(first + np.arange(CABLES), law, let_go))
-    return found
+            yield Told(first + np.arange(CABLES), partial(_of, told, own, argument), let_go)
 
 
-def _told(law: Law, numbers: Mapping[str, Array], elongation: Array) -> Array:
-    return np.asarray(law(elongation=elongation, **numbers))
+def _of(law: Law, numbers: Mapping[str, Array], argument: str, values: Array) -> Array:
+    return np.asarray(law(**{argument: values}, **numbers))
 
 
 def held(

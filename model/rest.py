@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled
-from model.extras import held, resting
+from model.extras import going, held, resting
 from model.kernel import Extras
 from model.kinematics import cross, rotation, trigonometry
 from model.library.selection import ActiveEffect
@@ -25,6 +25,9 @@ takes some rounds to find which of them are met."""
 
 STEP = 1e-6
 """Of the differences of the pose, m and rad."""
+
+SOON_S = 1e-5
+"""Over which a speed is taken for that of the cables."""
 
 POSE = np.arange(6)
 """Where it is in the state vector; its rates follow."""
@@ -94,9 +97,9 @@ def gained_at_once(
     extras: Extras | None,
     effects: Sequence[ActiveEffect],
     rest: Array,
-    offset_m: Sequence[float],
+    platform: Array,
 ) -> Array:
-    """What the state gains as X_p0 acts: the platform's offset, and what memory goes along with it.
+    """What memory gains as the platform is moved, and given a speed, at once.
 
     Parameters
     ----------
@@ -106,16 +109,23 @@ def gained_at_once(
         Effects in the kernel, packed and as they are.
     rest
         The state at rest, shape (states,).
-    offset_m
-        X_p0 in O-XYZ, m, shape (3,).
+    platform
+        What the platform gains, shape (12,): of its pose, m and rad, and of its rates.
     """
     gained = np.zeros_like(rest)
-    gained[:3] = offset_m
+    before = rest[:6]
+    poses = np.stack([before, before + platform[:6]])
     told = [one for one in resting(extras, effects, machine) if one.let_go.any()]
-    if told:
-        before, after = _elongation(machine, np.stack([rest, rest + gained])[:, :6])
+    if told and platform[:6].any():
+        here, there = _elongation(machine, poses)
         for places, law, share in told:
-            gained[places] = share * (law(after) - law(before))
+            gained[places] = share * (law(there) - law(here))
+    told = [one for one in going(extras, effects, machine) if one.let_go.any()]
+    if told and platform[6:].any():
+        ahead = poses[1] + np.outer([0.5, -0.5], SOON_S * platform[6:])
+        rate = np.subtract(*_elongation(machine, ahead)) / SOON_S
+        for places, law, share in told:
+            gained[places] = share * law(rate)
     return gained
 
 

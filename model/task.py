@@ -338,14 +338,11 @@ class Task:
         if at > 0:
             jump -= self._state_at(start_s, middle_s[at - 1])
         disturbance = self._disturbance
-        if any(disturbance.platform_offset_m):
-            jump += gained_at_once(
-                self.machine,
-                self.extras,
-                self.acting,
-                self.initial(steps),
-                disturbance.platform_offset_m,
-            )
+        at_once = np.concatenate([disturbance.platform_offset_m, np.zeros(3), jump[6:12]])
+        jump[:3] += disturbance.platform_offset_m
+        if at_once.any():
+            rest = self.initial(steps)
+            jump += gained_at_once(self.machine, self.extras, self.acting, rest, at_once)
         if self.excitation_effect:
             cables = (STATES - PLATFORM_STATES) // 2
             jump[PLATFORM_STATES : PLATFORM_STATES + cables] += disturbance.cable_offset_m

@@ -83,6 +83,9 @@ class State:
         What it has come to where the machine hangs, of `elongation` in m, shape (..., 8), of the
         machine's `stiffness` and of the effect's parameters, shape (8,); None: it stays where it
         begins, or is held by a rate.
+    goes
+        What it gains of a speed that the platform is given at once, as a motion without a ramp
+        begins: of `elongation_rate` in m/s, shape (..., 8), and of the same numbers; None: nothing.
     held_by
         The state whose rate is zero where this one is at rest, which may be its own; "": it stays
         where it begins.
@@ -93,6 +96,7 @@ class State:
     meaning: str
     shared: bool = False
     rests: Law | None = None
+    goes: Law | None = None
     held_by: str = ""
 
 

@@ -53,3 +53,23 @@ def test_a_platform_held_at_its_disturbance_has_taken_the_rims_along(rig: Rig) -
         behind_m = (1.0 - share) * longer_m
         assert dragged_n == pytest.approx(0.05 / 2e-3**2 * behind_m, abs=1e-6)
         assert lane.tension_n == pytest.approx(alone.tension_n, abs=1e-7)
+
+
+def test_a_machine_that_begins_to_move_at_once_has_its_rims_moving(rig: Rig) -> None:
+    """X*' jumps where there is no ramp: a rim that went along drags nothing then."""
+    still = (0.0, 0.0, 0.0)
+    at_once = Excitation(
+        rest_s=0.2, motion_s=0.2, ramp_s=0.0, platform_offset_m=still, cable_offset_m=0.0
+    )
+    plain = run(Task(rig, at_once))
+    after = int(np.argmax(plain.t_s > 0.2 - 1e-6))
+    faster = np.gradient(plain.elongation_m[after : after + 5], plain.t_s[1], axis=0)[0]
+    assert np.abs(faster).max() > 0.01
+    for share in (0.0, 1.0):
+        values = {"equivalent_kg": 0.05, "damping_ratio": 0.3, "let_go_share": share}
+        task = Task(rig, at_once, effects=[ActiveEffect("pulley_inertia", values)])
+        alone, lane = run(task), simulate_many([task])[0]
+        dragged_n = (alone.tension_n - plain.tension_n)[after]
+        behind = (1.0 - share) * faster
+        assert dragged_n == pytest.approx(2.0 * 0.3 * 0.05 / 2e-3 * behind, abs=0.02)
+        assert lane.tension_n == pytest.approx(alone.tension_n, abs=1e-7)
