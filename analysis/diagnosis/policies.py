@@ -93,7 +93,9 @@ POLICIES: dict[str, Policy] = {
     "cable_modes": Policy(form_share=0.4),
     # A string that hangs between a wall and what moves is shaken, whichever cable it is.
     "cable_end_forcing": Policy(
-        shapes={"reaction_share": (0.0, 1.0)}, together=True, form_share=0.2
+        shapes={"reaction_share": (0.0, 1.0), "overtone_share": (1.0,)},
+        together=True,
+        form_share=0.2,
     ),
     # A stiff post gives way at once, and what it stands on loses.
     "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0, 120.0), "frame_loss": (0.03, 0.6)}),
@@ -205,6 +207,7 @@ BETWEEN = (
     "log_share",
     "loaded_share",
     "reaction_share",
+    "overtone_share",
     "depth_share",
     "servo_s",
     "grip_s",

@@ -29,10 +29,19 @@ def transverse(
     return -shaken, damping * shaken
 
 
-def pull(v2: Any, v3: Any, h1: Any, h2: Any, h3: Any, stiffness: Any, length: Any) -> Any:
+def pull(
+    overtone_share: Any,
+    v2: Any,
+    v3: Any,
+    h1: Any,
+    h2: Any,
+    h3: Any,
+    stiffness: Any,
+    length: Any,
+) -> Any:
     """Of the other modes, as Eq. 15 has it of the first: k n^2 pi^2 X_n^2 / (4 L)."""
     squares = 4.0 * v2 * v2 + 9.0 * v3 * v3 + h1 * h1 + 4.0 * h2 * h2 + 9.0 * h3 * h3
-    return stiffness * PI * PI * squares / (4.0 * length)
+    return overtone_share * stiffness * PI * PI * squares / (4.0 * length)
 
 
 def rates(
@@ -91,6 +100,7 @@ def rates(
 def reaction(
     forcing_share: Any,
     reaction_share: Any,
+    overtone_share: Any,
     mid_span: Any,
     v2: Any,
     v3: Any,
@@ -106,8 +116,8 @@ def reaction(
     """T times the slope of the cable at its anchor, in both planes."""
     flat = level(direction_z)
     pulls = forcing_share * reaction_share * tension * PI / length / flat
-    vertical = pulls * (mid_span - 2.0 * v2 + 3.0 * v3)
-    horizontal = pulls * (h1 - 2.0 * h2 + 3.0 * h3)
+    vertical = pulls * (mid_span + overtone_share * (3.0 * v3 - 2.0 * v2))
+    horizontal = pulls * overtone_share * (h1 - 2.0 * h2 + 3.0 * h3)
     return (
         horizontal * direction_y - vertical * direction_x * direction_z,
         -horizontal * direction_x - vertical * direction_y * direction_z,
@@ -122,7 +132,7 @@ EFFECT = Effect(
     equation="X_n'' + c X_n' + (n pi/L)^2 (T/rho - v^2) X_n = 2 a (-1)^n w''/(n pi), w: movement "
     "of the anchor across the cable; n = 1 to 3, in both planes; the states X_n' hold "
     "X_n' - 2 a (-1)^n w'/(n pi). T += k sum n^2 pi^2 X_n^2/(4 L); across the cable the anchor is "
-    "pulled by a b T sum (-1)^(n + 1) n pi X_n/L",
+    "pulled by a b T sum (-1)^(n + 1) n pi X_n/L; of both sums all but the paper's mode times s",
     source="Irvine, Cable Structures (1981), Section 3; modal projection of a moving end; "
     "Meirovitch, Fundamentals of Vibrations (2001), Section 8.2",
     signature="cable vibration at the drive's own frequency, large near the cable's tone; tension "
@@ -130,6 +140,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("forcing_share", "1", 1.0, 0.0, 2.0, "a: 1 for a taut string", magnitude=True),
         Parameter("reaction_share", "1", 1.0, 0.0, 1.0, "b: 1 where the anchor feels the slope"),
+        Parameter("overtone_share", "1", 1.0, 0.0, 1.0, "s: 0 where Eq. 17 alone is shaken"),
     ),
     states=(
         *(

@@ -30,6 +30,7 @@ def known(random: np.random.Generator) -> dict:
         | {f"{name}_rate": 0.1 * random.normal() for name in names}
         | {"tension": TENSION_N, "length": LENGTH_M, "line_density": DENSITY}
         | {"axial_velocity": 0.0, "damping": 0.0, "forcing_share": 0.7, "reaction_share": 1.0}
+        | {"overtone_share": 1.0, "stiffness": 1500.0}
     )
 
 
@@ -82,6 +83,7 @@ def test_the_kernel_pulls_at_the_anchor_with_the_slope_of_the_cable(rig: Rig) ->
             {
                 "forcing_share": 1.0,
                 "reaction_share": 1.0,
+                "overtone_share": 1.0,
                 "mid_span": offset_m,
                 "tension": tension,
                 "length": length,
@@ -94,3 +96,14 @@ def test_the_kernel_pulls_at_the_anchor_with_the_slope_of_the_cable(rig: Rig) ->
     assert added[6:9] * machine.mass == pytest.approx(force, rel=1e-9)
     moment = np.cross(machine.anchor[3], force)
     assert machine.inertia @ added[9:12] == pytest.approx(moment, rel=1e-9)
+
+
+def test_without_overtones_what_is_shaken_is_eq_17() -> None:
+    effect = library()["cable_end_forcing"]
+    now = known(np.random.default_rng(4))
+    first = now | {"mid_span": now["v1"], "overtone_share": 0.0}
+    still = first | {"overtone_share": 1.0, "mid_span": 0.0}
+    assert call(effect.pull, first) == 0.0
+    assert call(effect.pull, still) > 0.0
+    both = np.add(call(effect.across, first), call(effect.across, still))
+    assert both == pytest.approx(call(effect.across, still | {"mid_span": now["v1"]}))
