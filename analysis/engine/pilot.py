@@ -59,13 +59,13 @@ def by_pilot(
         whole = by_ring(refiner, most_causes, tell, Start(chains[-1].nuisance))
         if whole.fitted:
             return whole
-    tried: list[str] = []
+    tried: list[Sequence[str]] = []
     wanted: set[tuple[str, ...]] = set()
     for _ in range(PILOTS):
         pilot = _pilot(system, at, chains, tried)
         if pilot is None:
             break
-        tried.append(pilot.records[0])
+        tried.append(pilot.records)
         by_lines_too = len(tried) <= BY_LINES
         whole = _led_by(refiner, pilot, most_causes, tell, wanted, by_lines_too)
         if whole.fitted:
@@ -116,13 +116,22 @@ def _led_by(
 
 
 def _pilot(
-    system: System, at: Array, chains: Sequence[Chained], tried: Sequence[str]
+    system: System, at: Array, chains: Sequence[Chained], tried: Sequence[Sequence[str]]
 ) -> _Pilot | None:
-    """What leads next: where parameters could not be led on, something says what is left out."""
+    """What leads next: where parameters could not be led on, something says what is left out.
+
+    With some of those before it first, which know parameters, and then by itself: what those leave,
+    or bend parameters by, hides in none of it.
+    """
     for one in chains:
-        if one.stuck and one.stuck not in tried:
-            return _Pilot((one.stuck, *one.led[:BESIDE]), one.nuisance if one.led else None)
-    record = _next(system, at, tried, farthest=len(tried) > 0)
+        if one.stuck:
+            beside, alone = (one.stuck, *one.led[:BESIDE]), (one.stuck,)
+            if one.led and beside not in tried:
+                return _Pilot(beside, one.nuisance)
+            if alone not in tried:
+                return _Pilot(alone, None)
+    begun = [records[0] for records in tried]
+    record = _next(system, at, begun, farthest=len(tried) > 0)
     return None if record is None else _Pilot((record,), None)
 
 
