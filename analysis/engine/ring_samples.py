@@ -11,7 +11,7 @@ from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
 from analysis.engine.sensitivity import BATCH
 from analysis.engine.system import Point, Prediction, System
-from analysis.engine.whiten import Whiten
+from analysis.engine.whiten import Whiten, noise_leaves
 
 FASTEST_HZ = 80.0
 """Faster samples are averaged in blocks down to about this."""
@@ -45,6 +45,8 @@ class Samples:
         self, system: System, *, held: str = "", everything: bool = False, share: float = 1.0
     ) -> None:
         self.system = system
+        self.noise = noise_leaves(system.bundles)
+        """What noise may leave of a squared sample, on average."""
         self.effort = 0.0
         """Simulations asked for so far, each as the share of a whole one's time that it took."""
         self._mask = [

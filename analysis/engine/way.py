@@ -182,7 +182,7 @@ class Way:
     def allowed(self, share: float) -> float:
         """What noise may leave of a sample up to a share of the time."""
         count = int((self._samples.shares <= share).sum())
-        return 1.0 + LEAVES * float(np.sqrt(2.0 / max(count, 1)))
+        return self._samples.noise + LEAVES * float(np.sqrt(2.0 / max(count, 1)))
 
     def in_phase(self, passed: float, exact: float = IN_PHASE) -> float:
         """What may be left of a sample of a longer stretch where the ring is in phase there.
