@@ -290,7 +290,7 @@ class RecordedMachine:
         """What nuisances move in each run."""
         return [
             Moving(self._meanings, self._known, record,
-                   struck=one.excitation.cable_offset_m > SEEN_OFFSET_M)
+                   struck=abs(one.excitation.cable_offset_m) > SEEN_OFFSET_M)
             for record, one in enumerate(self.recordings)
         ]  # fmt: skip
 

@@ -12,6 +12,7 @@ from analysis.diagnosis.nuisances import EVERY, STRINGS, Meaning
 from analysis.engine.system import Nuisance
 from model import ActiveEffect, Strings
 from model.library.discovery import library
+from model.task import UNCHANGED
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -19,9 +20,6 @@ Values = dict[str, dict[str, Any]]
 
 OUTSIDE = ("cell", "camera", "clock")
 """Sides that change how a simulation is looked at, and not the simulation."""
-
-
-AS_IN_RIG_FILE = Strings()
 
 
 @dataclass
@@ -46,7 +44,7 @@ class Moved:
     late_start_s: float = 0.0
     pose_zero: Array = field(default_factory=lambda: np.zeros(6))
     late_s: Array = field(default_factory=lambda: np.zeros(8))
-    strings: Strings = AS_IN_RIG_FILE
+    strings: Strings = UNCHANGED
 
 
 class Moving:
