@@ -38,6 +38,10 @@ less counts as that, where it is no farther behind nothing than"""
 NOT_YET_OUT = 6.0
 """this."""
 
+CLOSE_BY, TRIED, LITTLE = 12.0, 2, 150.0
+"""Where nothing is promised, so many of what is no farther behind nothing, as it usually is, are
+led for so many whole simulations: a ring is no straight line either."""
+
 MUCH = 0.5
 """Where no cause promises to explain this share of what parameters leave beyond noise, those may
 have come to a hollow beside their valley: they are led once more from elsewhere."""
@@ -132,8 +136,11 @@ def near_noise(
         about = faint(system, nothing, system.candidates, progress, strides=strides)
         screened, faintly = faint_search(about, refiner, candidates)
     whole = stride_guesses(about, candidates, faintly)
-    faintly, afar = _as_usual(refiner, nothing, faintly, whole)
-    return NearNoise(nothing, about, screened, faintly, afar)
+    usual, afar = _as_usual(refiner, nothing, faintly, whole)
+    found = NearNoise(nothing, about, screened, usual, afar)
+    if found.is_promising or has_several(system):
+        return found
+    return replace(found, afar=[*afar, *_led_a_little(refiner, nothing, usual, whole)])
 
 
 def _as_usual(
@@ -154,6 +161,26 @@ def _as_usual(
             there = refiner.standing(one.state, one.nuisance)
             found[names] = replace(there, log_score=one.log_score, left=nothing.left)
     return sorted(found.values(), key=lambda one: -one.log_score), afar
+
+
+def _led_a_little(
+    refiner: Refiner, nothing: Followed, faintly: Sequence[Fitted], whole: Sequence[Guess]
+) -> list[Guess]:
+    """Causes as they usually are, from where a few steps led, that are likelier than nothing."""
+    alone = next(one.log_score for one in faintly if not one.hypothesis.parts)
+    found = []
+    for one in whole[:TRIED]:
+        if one.log_score < alone - CLOSE_BY:
+            break
+        led = follow_ring(
+            refiner.system, one.nuisance, one.state, everything=True, near=True,
+            ahead=nothing.costs, most=LITTLE, lent=nothing.lends,
+        )  # fmt: skip
+        rise = 0.5 * (cost_of(nothing) - cost_of(led))
+        score = alone + rise + one.hypothesis.log_prior(refiner.candidates)
+        if led.state is not None and score > alone + WORTH_FOLLOWING:
+            found.append(Guess(led.state, led.nuisance, score))
+    return found
 
 
 def sharper_than_stated(refiner: Refiner, about: Faint) -> tuple[System, Start] | None:

@@ -11,8 +11,9 @@ from analysis.engine.faint import faint
 from analysis.engine.faint_search import faint_search
 from analysis.engine.followed import Followed
 from analysis.engine.followed_search import FollowedSearch
+from analysis.engine.guess import Guess
 from analysis.engine.look import look
-from analysis.engine.near_noise import _is_hollow
+from analysis.engine.near_noise import _is_hollow, _led_a_little
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.system import Nuisance
@@ -97,3 +98,25 @@ def test_beside_what_lines_are_sure_of_the_ring_is_asked_where_that_was_lost(
     search._keep(replace(near, share=1.0, misfit=1000.0, left=1.0, costs={1.0: 1000.0}))
     search.follow_beside(("damping",))
     assert asked == [near]
+
+
+@pytest.mark.parametrize(
+    ("rate", "behind", "led"), [(0.2, 6.0, True), (0.0, 6.0, False), (0.2, 20.0, False)],
+    ids=["it is there", "it is not", "it is too far behind"],
+)  # fmt: skip
+def test_what_is_a_little_behind_nothing_is_led_a_little(
+    rate: float, behind: float, led: bool
+) -> None:
+    system = Tuned(ring(0.0, rate, 0.0, 0.0))
+    refiner = Refiner(system, *look(system))
+    nothing = follow_ring(system, np.zeros(1), everything=True)
+    _, faintly = faint_search(
+        faint(system, nothing, system.candidates), refiner, refiner.candidates
+    )
+    alone = next(one for one in faintly if not one.hypothesis.parts).log_score
+    usual = Guess(state_of(DAMPING, 0.1), np.zeros(1), alone - behind)
+    found = _led_a_little(refiner, nothing, faintly, [usual])
+    assert bool(found) == led
+    for one in found:
+        assert one.log_score > alone
+        assert one.state.term_values()["damping", "rate"] == pytest.approx(rate, abs=0.01)
