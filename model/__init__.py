@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from model.observation import observe as observe
     from model.simulation import Simulation as Simulation
     from model.simulator import simulate as simulate
+    from model.strings import Strings as Strings
     from model.task import Disturbance as Disturbance
-    from model.task import Strings as Strings
     from model.task import Task as Task
 
 _DOORS = {
@@ -26,7 +26,7 @@ _DOORS = {
     "Machine": "model.machine",
     "Observation": "model.observation",
     "Simulation": "model.simulation",
-    "Strings": "model.task",
+    "Strings": "model.strings",
     "Task": "model.task",
     "compile_solver": "model.compiled",
     "jacobian": "model.batch",

@@ -1,7 +1,7 @@
 """One simulation as asked for, made ready for either kernel."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import signature
 from typing import Any, Literal, Self
@@ -23,6 +23,7 @@ from model.method import Method, find_method
 from model.motion import Motion, RampedSine
 from model.rest import gained_at_once, rest_state
 from model.steps import Steps, divide, jumps_at_s, steps_a_row
+from model.strings import UNCHANGED, Strings
 from model.tabulated import drive_at_stages
 
 Array = NDArray[np.float64]
@@ -31,9 +32,6 @@ SHORTEST_STEP_S = 2e-5
 """Steeper friction than this can follow trembles at rest, by less than its own switch."""
 
 DRIVES = ("wrench", "winch")
-
-LEAST_LEFT = 0.05
-"""A cable has some weight, and its string some loss, however far a fit strays."""
 
 THRIFTY = ("dop853", "dp5")
 """Methods that a fit chooses from."""
@@ -65,38 +63,6 @@ class Disturbance:
 
 
 NO_DISTURBANCE = Disturbance()
-
-
-@dataclass(frozen=True)
-class Strings:
-    """By how much cables are other strings than the rig file says: what a fit moves.
-
-    Parameters
-    ----------
-    density_share, loss_share
-        rho_w A (1 + e) and c_w (1 + d) of Eq. 17: of every cable, or of each, shape (8,). What
-        would leave less than `LEAST_LEFT` of either leaves that.
-    """
-
-    density_share: float | tuple[float, ...] = 0.0
-    loss_share: float | tuple[float, ...] = 0.0
-
-    def of(self, machine: Machine) -> Machine:
-        """The machine with such cables."""
-        if self == UNCHANGED:
-            return machine
-        return replace(
-            machine,
-            line_density=machine.line_density * _one_and(self.density_share),
-            damping=machine.damping * _one_and(self.loss_share),
-        )
-
-
-def _one_and(share: float | tuple[float, ...]) -> Array:
-    return np.maximum(1.0 + np.asarray(share), LEAST_LEFT)
-
-
-UNCHANGED = Strings()
 
 
 @dataclass(frozen=True)

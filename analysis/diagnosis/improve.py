@@ -17,7 +17,7 @@ from cdpr8 import CABLES
 from cdpr8.errors import RigFileError, ToolkitError
 from cdpr8.rigfile import load_rig
 from model.library.discovery import library
-from model.task import LEAST_LEFT
+from model.strings import left_of
 
 Array = NDArray[np.float64]
 
@@ -118,8 +118,8 @@ def _move(
         elif meaning.effect == STRINGS and amount:
             key = STRING_KEYS[meaning.parameter]
             row = getattr(rig.cable[meaning.cable - 1], key)
-            left = max(1.0 + amount, LEAST_LEFT)
-            _set(data["cable"][meaning.cable - 1], key, row.value * left, row.sigma)
+            value = row.value * float(left_of(amount))
+            _set(data["cable"][meaning.cable - 1], key, value, row.sigma)
         elif meaning.effect in ("pretension", "mass") and not balanced:
             _add(data, meaning, amount)
         elif meaning.parameter == "pretension_offset_n":

@@ -12,7 +12,7 @@ from analysis.diagnosis.nuisances import EVERY, STRINGS, Meaning
 from analysis.engine.system import Nuisance
 from model import ActiveEffect, Strings
 from model.library.discovery import library
-from model.task import UNCHANGED
+from model.strings import UNCHANGED
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
