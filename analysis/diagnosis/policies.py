@@ -90,7 +90,9 @@ POLICIES: dict[str, Policy] = {
         },
     ),
     "platform_damping": Policy(form_share=LINEAR),
-    "cable_modes": Policy(form_share=0.4),
+    "cable_modes": Policy(
+        shapes={"line_loss_share": (1.0,), "loss_growth": (0.0,)}, form_share=0.4
+    ),
     # A string that hangs between a wall and what moves is shaken, whichever cable it is.
     "cable_end_forcing": Policy(
         shapes={"reaction_share": (0.0, 1.0), "overtone_share": (1.0,)},
@@ -208,6 +210,8 @@ BETWEEN = (
     "loaded_share",
     "reaction_share",
     "overtone_share",
+    "line_loss_share",
+    "loss_growth",
     "depth_share",
     "servo_s",
     "grip_s",
