@@ -12,6 +12,7 @@ from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.engine.array import Array
 from analysis.engine.bundle import Bundle
+from analysis.engine.recorded import looked_at
 from analysis.engine.whiten import sigmas_of
 from model import Task
 from model.method import find_method
@@ -59,9 +60,7 @@ def finer_steps(recording: Recording, task: Task, sight: Sight) -> dict[str, flo
 
 def _rms(bundle: Bundle, missed: Array) -> float:
     """Of the samples that count, in units of their noise."""
-    inside = np.zeros(len(bundle.t_s), dtype=bool)
-    for one in bundle.segments:
-        inside |= one.holds(bundle.t_s)
+    inside = looked_at(bundle)
     if not inside.any():
         return 0.0
     return float(np.sqrt(np.mean((missed / sigmas_of(bundle))[inside] ** 2)))

@@ -15,11 +15,12 @@ from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
 from analysis.diagnosis.library_values import library_values
 from analysis.diagnosis.lost_frames import lost_frames
 from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
-from analysis.diagnosis.nuisances import Meaning, nuisances
+from analysis.diagnosis.nuisances import STRINGS, Meaning, nuisances
 from analysis.diagnosis.recording import Recording
 from analysis.diagnosis.sharing import Alike, Share, lanes_from, shares
 from analysis.diagnosis.sight import Sight, seen_by
 from analysis.diagnosis.sighting import sighting_of
+from analysis.diagnosis.strung import GROWN_WORDS, Strung, strung
 from analysis.diagnosis.trim import Trim
 from analysis.engine.bundle import Bundle
 from analysis.engine.candidate import Candidate
@@ -37,10 +38,6 @@ Key = tuple[object, ...]
 
 LATE_S = 0.3
 """Cameras and cells may be late by so much: a simulation goes on for longer than what is seen."""
-
-
-SEEN_OFFSET_M = 3e-4
-"""A string of a laboratory's cables that is set off by less adds no tenth of a millinewton."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +74,7 @@ class RecordedMachine:
             bundle for one in recordings for bundle in one.bundles
         )
         self._known, self._meanings = nuisances(self.recordings)
+        self._strung = [True] * len(recordings)
         self._moving = self._moved_by()
         self.sighting = sighting_of(recordings[0].rig)
         times = [
@@ -105,6 +103,17 @@ class RecordedMachine:
             as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
         )
         self._finer = [self._finer_steps(record) for record in range(len(recordings))]
+        strings = [self._strings(record) for record in range(len(recordings))]
+        self.recordings = tuple(
+            one.until(told.foretold, GROWN_WORDS)
+            for one, told in zip(recordings, strings, strict=True)
+        )
+        self.bundles = tuple(bundle for one in self.recordings for bundle in one.bundles)
+        self._strung = [
+            replace(told, bundles=one.bundles).shown
+            for one, told in zip(self.recordings, strings, strict=True)
+        ]
+        self._moving = self._moved_by()
         if len(recordings) == 1:
             self._candidates = self._as_frames_show(nominal[0])
 
@@ -289,10 +298,19 @@ class RecordedMachine:
     def _moved_by(self) -> list[Moving]:
         """What nuisances move in each run."""
         return [
-            Moving(self._meanings, self._known, record,
-                   struck=abs(one.excitation.cable_offset_m) > SEEN_OFFSET_M)
-            for record, one in enumerate(self.recordings)
-        ]  # fmt: skip
+            Moving(self._meanings, self._known, record, strung=shown)
+            for record, shown in enumerate(self._strung)
+        ]
+
+    def _strings(self, record: int) -> Strung:
+        """What a run shows of its strings, whatever is on."""
+
+        def see(points: Sequence[Point]) -> list[Prediction]:
+            found = self.do(Share(record, dict(enumerate(points))))
+            return [found[place] for place in range(len(points))]
+
+        strings = np.array([one.effect == STRINGS for one in self._meanings])
+        return strung(see, strings, self.recordings[record].bundles)
 
     def _finer_steps(self, record: int) -> dict[str, float]:
         job = self.job(Point(np.zeros(len(self._known))), record)

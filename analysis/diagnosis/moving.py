@@ -56,9 +56,8 @@ class Moving:
         Of the whole system, in its order.
     record
         Number of the run.
-    struck
-        Whether its cables are set off across when the motion starts: their strings vibrate then
-        with no effect on.
+    strung
+        Whether it shows what its cables are as strings with no effect on.
     """
 
     def __init__(
@@ -67,9 +66,9 @@ class Moving:
         nuisances: Sequence[Nuisance],
         record: int,
         *,
-        struck: bool = False,
+        strung: bool = False,
     ) -> None:
-        self._struck = struck
+        self._strung = strung
         self._sigmas = np.array([one.sigma for one in nuisances])
         pairs: dict[tuple[str, str], list[tuple[int, int]]] = {}
         for i, one in enumerate(meanings):
@@ -95,7 +94,7 @@ class Moving:
 
     def _vibrate(self, effects: Iterable[str]) -> bool:
         """Whether it matters what cables are as strings."""
-        return self._struck or not on_strings().isdisjoint(effects)
+        return self._strung or not on_strings().isdisjoint(effects)
 
     def by(self, nuisance: Array, values: Values) -> Moved:
         """What one run is simulated with.

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from analysis.diagnosis.channels import pose_of, tension_of, with_instants_of
 from analysis.engine.bundle import Bundle
 from analysis.engine.tones import RESONANT, resonant
+from analysis.engine.until import cut
 from analysis.series import measured_cables
 from cdpr8.errors import DataError
 from cdpr8.rigfile import Rig
@@ -70,6 +71,22 @@ class Recording:
     def rig(self) -> Rig:
         """The machine as the run has it."""
         return self.run.rig
+
+    def until(self, share: float, words: str) -> "Recording":
+        """As much of it as can be foretold.
+
+        Parameters
+        ----------
+        share
+            Of its time.
+        words
+            What a reader must know where that is not all, with a place for `until_s`.
+        """
+        if share >= 1.0:
+            return self
+        bundles = tuple(cut(one, share) for one in self.bundles)
+        until_s = max(one.end_s for bundle in bundles for one in bundle.segments)
+        return replace(self, bundles=bundles, notes=(*self.notes, words.format(until_s=until_s)))
 
     @property
     def hanging(self) -> tuple[int, ...]:

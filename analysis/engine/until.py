@@ -50,7 +50,7 @@ class Until(Restated):
         self.share = share
         self.begins = begins
         self.by_cause = by_cause
-        self.bundles = tuple(_cut(one, share) for one in stated.bundles)
+        self.bundles = tuple(cut(one, share) for one in stated.bundles)
 
     @property
     def end_s(self) -> float:
@@ -75,7 +75,8 @@ class Until(Restated):
         return replace(point, upto=min(point.upto, self.share))
 
 
-def _cut(bundle: Bundle, share: float) -> Bundle:
+def cut(bundle: Bundle, share: float) -> Bundle:
+    """As much of a bundle as lies before a share of its time."""
     last_s = float(bundle.t_s[0] + share * (bundle.t_s[-1] - bundle.t_s[0]))
     segments = []
     for group in _together(bundle.segments):

@@ -12,7 +12,7 @@ from analysis.challenge.rigs import cdpr8
 from analysis.challenge.truth import drawn_offset
 from analysis.diagnosis.prepare import prepare
 from analysis.diagnosis.recording import Recording
-from cdpr8.rigfile import Excitation
+from cdpr8.rigfile import Excitation, Rig
 from cdpr8.rigfile.schema import CellPlace
 from model import ActiveEffect, observe, simulate
 
@@ -39,9 +39,10 @@ def by_model(
     *,
     cell: CellPlace = CellPlace.PLATFORM,
     seed: int = 1,
+    rig: Rig | None = None,
 ) -> Recording:
     """A run of the model itself with effects and noise: cables polled in turn at 120 Hz."""
-    rig = cdpr8()
+    rig = cdpr8() if rig is None else rig
     cables = tuple(one.model_copy(update={"cell": cell}) for one in rig.cable)
     rig = rig.model_copy(update={"excitation": excitation, "cable": cables})
     generator = np.random.default_rng(seed)
