@@ -196,9 +196,13 @@ class Task:
         """How fast the steepest friction brings the platform to rest."""
         return self.machine.fastest_decay_1_per_s(self._slopes("steepest"))
 
+    @property
+    def stuck_hz(self) -> float:
+        """The quickest tone of the platform while all that can stick does; 0: nothing can."""
+        return self._stuck_rad_per_s / (2.0 * np.pi)
+
     @cached_property
     def _stuck_rad_per_s(self) -> float:
-        """The quickest tone of the platform while all that can stick does; 0: nothing can."""
         springs = self._slopes("stiffest")
         return self.machine.fastest_tone_rad_per_s(springs) if springs.any() else 0.0
 

@@ -41,7 +41,7 @@ def finer_steps(recording: Recording, task: Task, sight: Sight) -> dict[str, flo
     dict
         Method -> factor.
     """
-    rate_hz = recording.output_hz
+    rate_hz = recording.output_hz(task)
     exact = seen_by(recording, run(task, output_rate_hz=rate_hz), sight)
 
     def missed(name: str, finer: float) -> float:

@@ -235,16 +235,17 @@ class RecordedMachine:
             for place, point in work.points.items()
         }
         tasks = {job.key: job.task for jobs in all_jobs.values() for job in jobs}
-        rate_hz, finer = self.recordings[work.record].output_hz, self._finer[work.record]
-        alike: dict[tuple[str, float], list[Key]] = {}
+        recording, finer = self.recordings[work.record], self._finer[work.record]
+        alike: dict[tuple[float, str, float], list[Key]] = {}
         for key, task in tasks.items():
-            alike.setdefault(task.thrifty(rate_hz, finer), []).append(key)
+            rows_hz = recording.output_hz(task)
+            alike.setdefault((rows_hz, *task.thrifty(rows_hz, finer)), []).append(key)
         done: dict[Key, Simulation] = {}
-        for (method, step_s), keys in alike.items():
+        for (rows_hz, method, step_s), keys in alike.items():
             mine = [tasks[key] for key in keys]
             fewest = lanes_from({one.name for task in mine for one in task.acting})
             solved = simulate_many(
-                mine, method=method, step_s=step_s, output_rate_hz=rate_hz, fewest=fewest
+                mine, method=method, step_s=step_s, output_rate_hz=rows_hz, fewest=fewest
             )
             done.update(zip(keys, solved, strict=True))
         seen: dict[tuple[object, ...], Prediction] = {}
@@ -253,7 +254,7 @@ class RecordedMachine:
             key = tuple((job.key, job.sight.key) for job in jobs)
             if key not in seen:
                 simulation = without_bias([done[job.key] for job in jobs])
-                seen[key] = seen_by(self.recordings[work.record], simulation, jobs[0].sight)
+                seen[key] = seen_by(recording, simulation, jobs[0].sight)
             found[place] = seen[key]
         return found
 
@@ -319,9 +320,10 @@ class RecordedMachine:
     def _nominal(self) -> list[Simulation]:
         """Each run as the rig file has the machine."""
         nominal = Point(np.zeros(len(self._known)))
+        tasks = [self.job(nominal, record).task for record in range(len(self.recordings))]
         return [
-            simulate_task(self.job(nominal, record).task, output_rate_hz=one.output_hz)
-            for record, one in enumerate(self.recordings)
+            simulate_task(task, output_rate_hz=one.output_hz(task))
+            for task, one in zip(tasks, self.recordings, strict=True)
         ]
 
     def _as_frames_show(self, nominal: Simulation) -> tuple[Candidate, ...]:

@@ -119,7 +119,7 @@ def _seen(
 
     recording = machine.recordings[place]
     job = machine.job(point, place)
-    simulation = run(job.task, output_rate_hz=recording.output_hz)
+    simulation = run(job.task, output_rate_hz=recording.output_hz(job.task))
     elongation: list[Array] = []
     rate: list[Array] = []
     for cable, bundle in zip(recording.cables, recording.bundles, strict=False):
@@ -145,7 +145,7 @@ def _peaks(machine: "RecordedMachine", place: int) -> tuple[float, float, float]
     bundle = recording.bundles[-1]
     column = bundle.names.index(name)
     job = machine.job(Point(np.zeros(len(machine.nuisances))), place)
-    simulation = run(job.task, output_rate_hz=recording.output_hz)
+    simulation = run(job.task, output_rate_hz=recording.output_hz(job.task))
     inside = np.zeros(len(bundle.t_s), dtype=bool)
     fine = np.zeros(len(simulation.t_s), dtype=bool)
     for one in _stretches(recording.bundles):

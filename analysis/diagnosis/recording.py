@@ -15,6 +15,7 @@ from cdpr8.errors import DataError
 from cdpr8.rigfile import Rig
 from cdpr8.rigfile.excitation import Excitation
 from cdpr8.runfolder import Run
+from model import Task
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,6 +30,10 @@ OUTPUT_HZ, ABRUPT_HZ = 333.0, 1332.0
 """Rows a second: what cubics through them miss of a ring is 0.08 of the noise, rms. Where a motion
 begins or ends at once, tones of 60 and 80 Hz ring, of which 333 Hz miss 4 and 12 %, more than the
 noise. Four rows a step take half as long again."""
+
+STUCK_HZ = 40.0
+"""Nor are rows far apart where a platform rings faster than this while its cables stick on their
+pulleys: at 100 Hz they miss a quarter of that."""
 
 
 @dataclass(frozen=True)
@@ -98,11 +103,16 @@ class Recording:
             if _hangs(one.value[:, 0], float(np.sqrt(one.covariance[0, 0])))
         )
 
-    @property
-    def output_hz(self) -> float:
-        """Rows a second of a simulation of it."""
+    def output_hz(self, task: Task) -> float:
+        """Rows a second of a simulation of it.
+
+        Parameters
+        ----------
+        task
+            What is simulated.
+        """
         abrupt = self.excitation.ramp_s == 0.0 or self.excitation.ending == "at_once"
-        return ABRUPT_HZ if abrupt else OUTPUT_HZ
+        return ABRUPT_HZ if abrupt or task.stuck_hz > STUCK_HZ else OUTPUT_HZ
 
 
 def recording(run: Run, pose: "pd.DataFrame | None", shift_s: float = 0.0) -> Recording:

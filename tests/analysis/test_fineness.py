@@ -48,7 +48,7 @@ def test_the_stronger_a_ring_the_finer_the_steps(let_go: Recording) -> None:
 def test_what_they_miss_is_far_below_the_noise(let_go: Recording) -> None:
     machine = RecordedMachine([let_go], ("stiffness",), workers=1)
     job = machine.job(Point(np.zeros(len(machine.nuisances))), 0)
-    rate_hz = let_go.output_hz
+    rate_hz = let_go.output_hz(job.task)
     exact = seen_by(let_go, run(job.task, step_s=5e-4, output_rate_hz=rate_hz), job.sight)
 
     def missed(name: str, step_s: float) -> float:

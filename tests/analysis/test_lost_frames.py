@@ -39,7 +39,7 @@ def found(recording: Recording) -> list[int]:
     """Before which of the frames that are left."""
     machine = RecordedMachine([recording], ("stiffness",), workers=1)
     job = machine.job(Point(np.zeros(len(machine.nuisances))), 0)
-    seen = run(job.task, output_rate_hz=recording.output_hz)
+    seen = run(job.task, output_rate_hz=recording.output_hz(job.task))
     at_s = lost_frames(recording, seen, job.sight, FRAME_HZ)
     stamps = recording.bundles[-1].t_s - job.sight.start_s
     return np.searchsorted(stamps, at_s).tolist()

@@ -157,7 +157,7 @@ def test_however_high_a_machine_rings_that_is_let_go_its_rows_are_close_enough(
     machine = RecordedMachine([recorded], NAMES, workers=1)
     nominal = Point(np.zeros(len(machine.nuisances)), ring="as_is")
     job = machine.job(nominal, 0)
-    finer = run(job.task, output_rate_hz=10.0 * recorded.output_hz)
+    finer = run(job.task, output_rate_hz=10.0 * recorded.output_hz(job.task))
     (seen,) = machine.simulate([nominal], lambda found: found)
     for bundle, found, wanted in zip(
         machine.bundles, seen, seen_by(recorded, finer, job.sight), strict=True
