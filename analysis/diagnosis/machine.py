@@ -74,7 +74,7 @@ class RecordedMachine:
             bundle for one in recordings for bundle in one.bundles
         )
         self._known, self._meanings = nuisances(self.recordings)
-        self._strung = [True] * len(recordings)
+        self._strung = [False] * len(recordings)
         self._moving = self._moved_by()
         self.sighting = sighting_of(recordings[0].rig)
         times = [
@@ -103,19 +103,30 @@ class RecordedMachine:
             as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
         )
         self._finer = [self._finer_steps(record) for record in range(len(recordings))]
-        strings = [self._strings(record) for record in range(len(recordings))]
-        self.recordings = tuple(
-            one.until(told.foretold, GROWN_WORDS)
-            for one, told in zip(recordings, strings, strict=True)
-        )
-        self.bundles = tuple(bundle for one in self.recordings for bundle in one.bundles)
-        self._strung = [
-            replace(told, bundles=one.bundles).shown
-            for one, told in zip(self.recordings, strings, strict=True)
-        ]
-        self._moving = self._moved_by()
         if len(recordings) == 1:
             self._candidates = self._as_frames_show(nominal[0])
+
+    def with_strings(self) -> "RecordedMachine":
+        """The same machine, what its cables are as strings simulated in runs that show it.
+
+        Where strings grow by themselves, a run counts up to there.
+        """
+        found = copy(self)
+        found._strung = [True] * len(self.recordings)
+        found._moving = found._moved_by()
+        told = [found._strings(record) for record in range(len(self.recordings))]
+        found.recordings = tuple(
+            one.until(strings.foretold, GROWN_WORDS)
+            for one, strings in zip(self.recordings, told, strict=True)
+        )
+        found.bundles = tuple(bundle for one in found.recordings for bundle in one.bundles)
+        found._strung = [
+            strings.shown_in(one.bundles)
+            for one, strings in zip(found.recordings, told, strict=True)
+        ]
+        found._moving = found._moved_by()
+        found._crew = Crew(found, self._workers)
+        return found
 
     def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
         """The same machine, where less of its recordings counts.

@@ -85,7 +85,7 @@ def diagnose_recordings(
         Told of progress.
     """
     with one_thread_each():
-        machine = RecordedMachine(recordings, effects, workers)
+        machine = RecordedMachine(recordings, effects, workers).with_strings()
         diagnosis = diagnose(machine, stop_after=stop_after, tell=tell)
     if diagnosis.system.bundles is not machine.bundles:
         machine = machine.looked_at_in(diagnosis.system.bundles)

@@ -53,12 +53,17 @@ class Strung:
     apart: Sequence[Array]
     bundles: Sequence[Bundle]
 
-    @property
-    def shown(self) -> bool:
-        """Whether it tells by how much strings are off."""
+    def shown_in(self, bundles: Sequence[Bundle]) -> bool:
+        """Whether it tells by how much strings are off.
+
+        Parameters
+        ----------
+        bundles
+            Of the recording, in which segments may end earlier.
+        """
         told = sum(
             np.nansum(apart[:, looked_at(bundle)] ** 2, axis=(1, 2))
-            for apart, bundle in zip(self.apart, self.bundles, strict=True)
+            for apart, bundle in zip(self.apart, bundles, strict=True)
         )
         return bool(np.max(told) > SHOWN)
 

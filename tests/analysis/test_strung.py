@@ -38,13 +38,13 @@ def seeing(of_strings: Array) -> Callable[[Sequence[Point]], Sequence[Prediction
 
 def test_strings_that_do_nothing_are_not_shown_whatever_else_is_off() -> None:
     told = strung(seeing(np.full(len(T_S), 0.01)), STRINGS, [WHOLE])
-    assert not told.shown
+    assert not told.shown_in([WHOLE])
     assert told.foretold == 1.0
 
 
 def test_strings_that_are_set_off_are_shown_and_foretold_to_the_end() -> None:
     told = strung(seeing(200.0 * np.exp(-T_S)), STRINGS, [WHOLE])
-    assert told.shown
+    assert told.shown_in([WHOLE])
     assert told.foretold == 1.0
 
 
@@ -80,7 +80,7 @@ def test_a_platform_let_go_counts_up_to_where_strings_in_tune_with_it_grow(
     )  # fmt: skip
     rig = in_tune(cdpr8()) if tuned else cdpr8()
     recorded = by_model(tmp_path / "let go", [], excitation, rig=rig)
-    machine = RecordedMachine([recorded], ("stiffness",), workers=1)
+    machine = RecordedMachine([recorded], ("stiffness",), workers=1).with_strings()
     (seen,) = machine.recordings
     assert len(seen.notes) - len(recorded.notes) == tuned
     end_s = [max(one.end_s for one in bundle.segments) for bundle in seen.bundles]
