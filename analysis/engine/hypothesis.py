@@ -1,6 +1,6 @@
 """A hypothesis: which candidates are on, and which of their terms."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import comb, log
 
@@ -69,6 +69,19 @@ class Hypothesis:
             (name, tuple(sorted(self.parts[name].terms)), self.parts[name].shared)
             for name in self.names
         )
+
+    def also(self, candidates: Mapping[str, Candidate]) -> Iterator[tuple[str, ...]]:
+        """Names of hypotheses that it is: each with the candidate that one of its laws came to be.
+
+        Parameters
+        ----------
+        candidates
+            By name.
+        """
+        for name, part in self.parts.items():
+            for shape in candidates[name].shapes:
+                if shape.low_is and shape.is_low(part.shapes.get(shape.name, shape.default)):
+                    yield tuple(sorted({*self.parts, shape.low_is} - {name}))
 
     def log_prior(self, candidates: Mapping[str, Candidate], *, moved: bool = True) -> float:
         """Prior odds, the choice of terms and what their free numbers cost.

@@ -1,7 +1,7 @@
 """The verdict: which causes are there, how sure that is, and what these data cannot tell apart."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -240,17 +240,9 @@ def _idle(
         for name in negligible(one, candidates):
             without = best[one.hypothesis.without(name).names]
             found[i] |= bool(scores[i] < without + STANDS_OUT)
-        found[i] |= any(best[names] >= scores[i] for names in _others(one, candidates))
+        others = one.hypothesis.also(candidates)
+        found[i] |= any(best[names] >= scores[i] for names in others)
     return found
-
-
-def _others(fitted: Fitted, candidates: Mapping[str, Candidate]) -> Iterator[tuple[str, ...]]:
-    """Names of hypotheses that one is: each with the candidate that one of its laws came to be."""
-    names = set(fitted.hypothesis.names)
-    for name, part in fitted.hypothesis.parts.items():
-        for shape in candidates[name].shapes:
-            if shape.low_is and shape.is_low(part.shapes.get(shape.name, shape.default)):
-                yield tuple(sorted({*names, shape.low_is} - {name}))
 
 
 def negligible(fitted: Fitted, candidates: Mapping[str, Candidate]) -> tuple[str, ...]:

@@ -92,9 +92,13 @@ class RivalLeader(Leader):
         """Another law by growing windows, where neither that nor the best explains to the noise.
 
         A law that is not what is there bends parameters, and from there another that comes nearly
-        as far may have come to a hollow.
+        as far may have come to a hollow. What came to be a law that was led is that, not another.
         """
         if self._near or has_several(self._system) or len(found.names) != 1 or not found.to_end:
+            return
+        assert found.state is not None
+        led = {one.names for one in self._led if one.to_end}
+        if any(one in led for one in found.state.hypothesis.also(self._refiner.candidates)):
             return
         best, least = self._best, noise_of(self._system)
         if min(found.left, best.left) < least or self._effort > self._most:

@@ -192,6 +192,19 @@ def test_rows_are_close_enough_where_a_platform_rings_while_its_cables_stick(
     assert misses[1] < misses[0] / 4.0
 
 
+@pytest.mark.parametrize(("friction", "times"), [(0.0, 1.0), (0.003, 2.0), (0.01, 3.0), (0.1, 4.0)])
+def test_rows_are_as_many_times_as_close_as_that_rings_fast(
+    recorded: Recording, friction: float, times: float
+) -> None:
+    machine = RecordedMachine([recorded], ("pulley_capstan",), workers=1)
+    rubs = Setting({f"friction@{i}": friction for i in range(1, 9)}, {"presliding_m": 4e-5})
+    plain = Point(np.zeros(len(machine.nuisances)))
+    stuck = machine.job(replace(plain, effects={"pulley_capstan": rubs}), 0).task
+    assert recorded.output_hz(stuck) == times * recorded.output_hz(machine.job(plain, 0).task)
+    # Ten in each period, but for what rings faster than rows are ever close.
+    assert times == 4.0 or recorded.output_hz(stuck) > 10.0 * stuck.stuck_hz
+
+
 def test_what_is_off_in_every_run_is_off_once(recorded: Recording) -> None:
     other = replace(recorded, run=replace(recorded.run, folder=Path("other")))
     machine = RecordedMachine([recorded, other], NAMES, workers=1)
