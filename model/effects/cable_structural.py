@@ -89,7 +89,7 @@ EFFECT = Effect(
     "proportion to amplitude; like Kelvin-Voigt at one frequency",
     parameters=(
         Parameter("loss_factor", "1", 0.03, 0.0, 0.2, "eta", magnitude=True),
-        Parameter("decades_below", "1", 0.0, -2.0, 2.0, "D, of loss below the branches"),
+        Parameter("decades_below", "1", 0.0, -4.0, 2.0, "D, of loss below the branches"),
         Parameter("branch_ratio", "1", RATIO, 2.5, 12.0, "R, of a branch to the next slower one"),
         Parameter("highest_hz", "Hz", HIGHEST_HZ, 5.0, 125.0, "f_h, of the quickest branch"),
         LET_GO,
