@@ -20,13 +20,12 @@ from analysis.engine.followed import Followed
 from analysis.engine.guess import Guess
 from analysis.engine.judge import NOISE
 from analysis.engine.kin import kin_alike, kin_left, lead_from, lead_instead
-from analysis.engine.leader import Leader
+from analysis.engine.leader import ARRIVED, Leader
 from analysis.engine.moved import freed
 from analysis.engine.part import has_several
 from analysis.engine.places import as_likely_in, is_placed, placed_again
 from analysis.engine.ring_fit import BEHIND, FAINT, follow_ring
 from analysis.engine.state import State
-from analysis.engine.way import HOPELESS
 
 EXCHANGES = 2
 """From what rivals have led to, rivals are looked for once more: so often at a time."""
@@ -172,7 +171,7 @@ class RivalLeader(Leader):
     @property
     def _most_alike(self) -> float:
         """Of what the best leaves, so much may be left in all places alike, for kin to be tried."""
-        return FAINT if has_several(self._system) else HOPELESS
+        return FAINT if has_several(self._system) else ARRIVED
 
     @property
     def _in_place(self) -> list[Followed]:
