@@ -59,11 +59,19 @@ Place = tuple[str, int, int]
 
 @dataclass(frozen=True)
 class _Seen:
-    """What is left about some numbers, and what one unit of each term does there, shape (n,)."""
+    """What is left about some numbers, shape (n,), and what one unit of each does there, (k, n).
+
+    And one of each term that was asked about, shape (n,).
+    """
 
     telling: float
     residual: Array
+    numbers: Array
     changes: Mapping[Place, Array]
+
+    def forgotten(self) -> "_Seen":
+        """Without what may be much."""
+        return replace(self, numbers=np.zeros((0, len(self.residual))), changes={})
 
 
 @dataclass(frozen=True)
@@ -86,6 +94,8 @@ class Faint:
         Nuisances of directions, shape (nuisances, p).
     seen
         Of candidates that are not on, for what is near.
+    here
+        Of all that was asked, for more to be asked about just there.
     strides
         What causes do there as they usually are, shape (f,), as far as it was asked for.
     """
@@ -96,11 +106,12 @@ class Faint:
     own: Mapping[str, Array]
     rotation: Array
     seen: _Seen
+    here: _Seen
     strides: tuple[tuple[Stride, Array], ...] = ()
 
     def to_lead_from(self) -> "Faint":
         """Without what is kept of all samples for what is near, which may be much."""
-        return replace(self, seen=replace(self.seen, changes={}))
+        return replace(self, seen=self.seen.forgotten(), here=self.here.forgotten())
 
 
 def faint(
@@ -125,21 +136,18 @@ def faint(
         Told of it.
     near
         The same about other numbers: where those come to the same, what candidates do beside them
-        is not simulated again.
+        is not simulated again. About just these, with other candidates: nothing is that is known.
     strides
         Which causes to simulate there as they usually are, where straight lines do not say that
         there is nothing to see, or too much.
     """
     followed = followed.about or followed
     samples = Samples(system, everything=True, share=followed.telling)
-    (here,) = samples.residuals([followed.point])
-    # What nuisances do is known already, where they were led to just there, or near.
-    known = np.zeros((0, len(here)))
-    if followed.lends is not None and followed.fresh and followed.telling == 1.0:
-        known = followed.lends.columns
-    own, steps = differences(samples, followed, here, known=len(known))
-    numbers, count = len(steps), len(followed.nuisance)
-    kept = _kept(near, followed, here)
+    before = _just_here(near, followed)
+    here, own = _numbers(samples, followed) if before is None else (before.residual, before.numbers)
+    numbers, count = len(own), len(followed.nuisance)
+    close = _kept(near, followed, here)
+    kept = close if before is None else {**close, **before.changes}
     same = own_nuisances(system.nuisances)
     asked = _asked(candidates, followed.point, same)
     places = [place for place in asked if place not in kept]
@@ -151,8 +159,8 @@ def faint(
         if progress is not None:
             progress(len(rows), len(points))
     does = np.array(rows).reshape(-1, len(here)) / sizes[:, None]
-    changes = np.concatenate([known, own, does])
-    seen = _Seen(followed.telling, here, dict(zip(places, changes[numbers:], strict=True)))
+    changes = np.concatenate([own, does])
+    new = dict(zip(places, changes[numbers:], strict=True))
     old = [place for place in asked if place in kept]
     if old:
         changes, places = np.concatenate([changes, [kept[one] for one in old]]), places + old
@@ -186,12 +194,12 @@ def faint(
         labels=_labels(size),
         used=used,
     )
-    if near is not None and kept:
-        seen = near.seen
-    elif changes.size > KEPT:
-        seen = replace(seen, changes={})
+    about = _Seen(followed.telling, here, own, {**{one: kept[one] for one in old}, **new})
+    if changes.size > KEPT:
+        about = about.forgotten()
     walked = tuple(zip(strides, inside[:, len(changes) - len(strides) :].T, strict=True))
-    return Faint(followed, problem, terms, on, rotation, seen, walked)
+    seen = near.seen if near is not None and close else about
+    return Faint(followed, problem, terms, on, rotation, seen, about, walked)
 
 
 def _asked(
@@ -227,6 +235,26 @@ def _worth_asking(
         if SEEN < seen < LOST:
             found.append(one)
     return found
+
+
+def _numbers(samples: Samples, followed: Followed) -> tuple[Array, Array]:
+    """What is left of all samples, shape (n,), and what one unit of each number does, (k, n)."""
+    (here,) = samples.residuals([followed.point])
+    # What nuisances do is known already, where they were led to just there, or near.
+    known = np.zeros((0, len(here)))
+    if followed.lends is not None and followed.fresh and followed.telling == 1.0:
+        known = followed.lends.columns
+    own, _ = differences(samples, followed, here, known=len(known))
+    return here, np.concatenate([known, own])
+
+
+def _just_here(near: Faint | None, followed: Followed) -> _Seen | None:
+    """What was simulated about just these numbers; None: nothing was."""
+    if near is None or len(near.here.numbers) == 0 or near.here.telling != followed.telling:
+        return None
+    there = near.followed
+    same = there.nuisance is followed.nuisance and there.state is followed.state
+    return near.here if same else None
 
 
 def _kept(near: Faint | None, followed: Followed, here: Array) -> dict[Place, Array]:

@@ -93,6 +93,7 @@ class Leader:
         self._begun: list[State] = []
         self._effort = 0.0
         self._asked: Faint | None = None
+        self._asked_itself = False
         self._exchanged: set[tuple[str, ...]] = set()
         self._waiting: dict[tuple[str, ...], tuple[Faint, list[Exchange]]] = {}
         self._placed: set[tuple[object, ...]] = set()
@@ -193,18 +194,29 @@ class Leader:
         fresh = [one for one in hypotheses if one.hypothesis.names not in known]
         return [one for one in fresh if not any(one.state.is_about(at) for at in self._begun)]
 
-    def _faint(self, about: Followed) -> Faint:
+    def _faint(self, about: Followed, *, itself: bool = False) -> Faint:
         """What could be there beside what is on, and of that elsewhere.
 
         Where it was asked last is kept.
+
+        Parameters
+        ----------
+        about
+            What was led.
+        itself
+            Of what is on alone.
         """
         there = about.about or about
         known = None if self._asked is None else self._asked.followed
-        if known is None or known.nuisance is not there.nuisance or known.state is not there.state:
+        just = known and known.nuisance is there.nuisance and known.state is there.state
+        if not just or (self._asked_itself and not itself):
             on = [self._refiner.candidates[name] for name in about.names]
-            asked = [*others_beside(self._refiner, about), *(one for one in on if is_placed(one))]
-            if len(on) > 1 and there.to_end and there.left < noise_of(self._system):
-                asked += kin_beside(self._refiner, about)
+            asked = [one for one in on if is_placed(one)]
+            if not itself:
+                asked = [*others_beside(self._refiner, about), *asked]
+                if len(on) > 1 and there.to_end and there.left < noise_of(self._system):
+                    asked += kin_beside(self._refiner, about)
             self._asked = faint(self._system, about, asked, near=self._asked)
+            self._asked_itself = itself
         assert self._asked is not None
         return self._asked

@@ -191,12 +191,12 @@ class RivalLeader(Leader):
                 return
             self._placed.add(best.state.hypothesis.key)
             if not best.to_end:
-                asked = self._faint(best)
+                asked = self._faint(best, itself=True)
                 for _, one in placed_again(asked, candidates)[:1]:
                     state = State.of(one, candidates)
                     self._lead(nuisances_of(asked, one), state, near=False)
                 continue
-            asked = self._faint(replace(best, about=None))
+            asked = self._faint(replace(best, about=None), itself=True)
             forms = forms_of(self._refiner, best, self._nothing, len(self._samples.shares))
             _, noise = max(forms)
             told = placed_again(asked, candidates, noise)
