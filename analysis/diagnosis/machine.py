@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,42 +11,25 @@ from numpy.typing import NDArray
 from analysis.diagnosis.as_recorded import as_clipped, as_lost, as_seen
 from analysis.diagnosis.candidates import candidates
 from analysis.diagnosis.fineness import finer_steps
-from analysis.diagnosis.guard import GUARDS, guard_of, without_bias
-from analysis.diagnosis.library_values import library_values
+from analysis.diagnosis.guard import GUARDS
 from analysis.diagnosis.lost_frames import lost_frames
-from analysis.diagnosis.moving import OUTSIDE, Moved, Moving, Values, active, nothing
+from analysis.diagnosis.moving import Moving
 from analysis.diagnosis.nuisances import STRINGS, Meaning, nuisances
 from analysis.diagnosis.recording import Recording
-from analysis.diagnosis.sharing import Alike, Share, lanes_from, shares
-from analysis.diagnosis.sight import Sight, seen_by
-from analysis.diagnosis.sighting import sighting_of
+from analysis.diagnosis.sharing import Alike, Share, shares
+from analysis.diagnosis.sighting import Sighting, sighting_of
+from analysis.diagnosis.simulated_runs import Job, Key, SimulatedRuns
 from analysis.diagnosis.strung import GROWN_WORDS, Strung, strung
 from analysis.diagnosis.trim import Trim
 from analysis.engine.bundle import Bundle
 from analysis.engine.candidate import Candidate
 from analysis.engine.system import Nuisance, Point, Prediction
 from cdpr8.crew import Crew
-from model import Simulation, Task, simulate_many
-from model.library.discovery import library
-from model.motion import RampedSine
+from model import Simulation
 from model.rest import tones_hz
 from model.simulator import run as simulate_task
 
 Array = NDArray[np.float64]
-Key = tuple[object, ...]
-"""Equal where the same is simulated."""
-
-LATE_S = 0.3
-"""Cameras and cells may be late by so much: a simulation goes on for longer than what is seen."""
-
-
-@dataclass(frozen=True)
-class _Job:
-    """One run of one point: what to simulate and how to look at it."""
-
-    key: Key
-    task: Task
-    sight: Sight
 
 
 class RecordedMachine:
@@ -75,8 +58,9 @@ class RecordedMachine:
         )
         self._known, self._meanings = nuisances(self.recordings)
         self._strung = [False] * len(recordings)
-        self._moving = self._moved_by()
-        self.sighting = sighting_of(recordings[0].rig)
+        self._runs = SimulatedRuns(
+            self.recordings, self._moved_by(), sighting_of(recordings[0].rig), (1e3,) * 8
+        )
         times = [
             (one.excitation.start_s + one.shift_s, one.excitation.end_s + one.shift_s)
             for one in recordings
@@ -89,20 +73,19 @@ class RecordedMachine:
             if posed or one.side not in ("camera", "clock")
         )
         self._workers = workers
-        self._crew: Crew[Share, dict[int, Prediction]] = Crew(self, workers)
-        self._guards = [guard_of(one.rig, one.excitation.frequency_hz) for one in recordings]
         self._nothing = [[np.zeros_like(bundle.value) for bundle in one.bundles]
                          for one in recordings]  # fmt: skip
         self.simulated = 0
         """Simulations run so far."""
-        self.peaks_n = [1e3] * 8
         shown_n = self._shown()
         nominal = self._nominal()
-        self.peaks_n = _peaks(nominal, shown_n)
+        self._runs = replace(self._runs, peaks_n=_peaks(nominal, shown_n))
         self._candidates = tuple(
             as_clipped(one, np.subtract(self.peaks_n, shown_n)) for one in self._candidates
         )
-        self._finer = [self._finer_steps(record) for record in range(len(recordings))]
+        finer = tuple(self._finer_steps(record) for record in range(len(recordings)))
+        self._runs = replace(self._runs, finer=finer)
+        self._crew = self._crew_of()
         if len(recordings) == 1:
             self._candidates = self._as_frames_show(nominal[0])
 
@@ -113,7 +96,7 @@ class RecordedMachine:
         """
         found = copy(self)
         found._strung = [True] * len(self.recordings)
-        found._moving = found._moved_by()
+        found._runs = replace(self._runs, moving=found._moved_by())
         told = [found._strings(record) for record in range(len(self.recordings))]
         found.recordings = tuple(
             one.until(strings.foretold, GROWN_WORDS)
@@ -124,8 +107,8 @@ class RecordedMachine:
             strings.shown_in(one.bundles)
             for one, strings in zip(found.recordings, told, strict=True)
         ]
-        found._moving = found._moved_by()
-        found._crew = Crew(found, self._workers)
+        found._runs = replace(self._runs, recordings=found.recordings, moving=found._moved_by())
+        found._crew = found._crew_of()
         return found
 
     def looked_at_in(self, bundles: Sequence[Bundle]) -> "RecordedMachine":
@@ -154,9 +137,32 @@ class RecordedMachine:
         """
         found = copy(self)
         found._known = tuple(known)
-        found._moving = found._moved_by()
-        found._crew = Crew(found, self._workers)
+        found._runs = replace(self._runs, moving=found._moved_by())
+        found._crew = found._crew_of()
         return found
+
+    def with_peaks(self, peaks_n: Sequence[float]) -> "RecordedMachine":
+        """The same machine, the highest tensions those of others.
+
+        Parameters
+        ----------
+        peaks_n
+            Of each cable, N.
+        """
+        found = copy(self)
+        found._runs = replace(self._runs, peaks_n=tuple(peaks_n))
+        found._crew = found._crew_of()
+        return found
+
+    @property
+    def sighting(self) -> Sighting:
+        """How the camera sees the platform."""
+        return self._runs.sighting
+
+    @property
+    def peaks_n(self) -> Sequence[float]:
+        """Highest tension of each cable over all runs, N."""
+        return self._runs.peaks_n
 
     @property
     def nuisances(self) -> Sequence[Nuisance]:
@@ -211,6 +217,10 @@ class RecordedMachine:
         """What a trim of the platform does."""
         return Trim(self._meanings, self._known, self._pretension_n)
 
+    def job(self, point: Point, record: int) -> Job:
+        """What one run of a point is."""
+        return self._runs.job(point, record)
+
     def _pretension_n(self, point: Point, record: int) -> Array:
         """What cables are tightened to in a run, shape (8,), N."""
         return np.asarray(self.job(point, record).task.machine.pretension)
@@ -221,104 +231,29 @@ class RecordedMachine:
         name = self.recordings[record].run.name
         for place, point in enumerate(points):
             if not point.records or name in point.records:
-                together.setdefault(self._key(point, record), {})[place] = point
+                together.setdefault(self._runs.key(point, record), {})[place] = point
         found = []
         for key in sorted(together, key=str):
             first = next(iter(together[key].values()))
             found.append(Alike(together[key], len(GUARDS[first.ring])))
         return found
 
-    def _key(self, point: Point, record: int) -> Key:
-        """Equal where the same is simulated, however it is looked at."""
-        inside = [
-            (name, tuple(sorted(one.values.items())), tuple(sorted(one.shapes.items())))
-            for name, one in sorted(point.effects.items())
-            if library()[name].acts.side not in OUTSIDE
-        ]
-        motion = _cut(self.recordings[record], point.upto)
-        moved = point.nuisance[self._moving[record].inside(point.effects)].tobytes()
-        return len(inside), *inside, point.ring, motion and motion.duration_s, moved
+    def _crew_of(self) -> Crew[Share, dict[int, Prediction]]:
+        """Processes that simulate runs as they are now."""
+        return Crew(self._runs, self._workers)
 
-    def do(self, work: Share) -> dict[int, Prediction]:
-        """What is seen of a share: place of the point -> its samples."""
-        all_jobs = {
-            place: [self.job(point, work.record, guard) for guard in GUARDS[point.ring]]
-            for place, point in work.points.items()
-        }
-        tasks = {job.key: job.task for jobs in all_jobs.values() for job in jobs}
-        recording, finer = self.recordings[work.record], self._finer[work.record]
-        alike: dict[tuple[float, str, float], list[Key]] = {}
-        for key, task in tasks.items():
-            rows_hz = recording.output_hz(task)
-            alike.setdefault((rows_hz, *task.thrifty(rows_hz, finer)), []).append(key)
-        done: dict[Key, Simulation] = {}
-        for (rows_hz, method, step_s), keys in alike.items():
-            mine = [tasks[key] for key in keys]
-            fewest = lanes_from({one.name for task in mine for one in task.acting})
-            solved = simulate_many(
-                mine, method=method, step_s=step_s, output_rate_hz=rows_hz, fewest=fewest
-            )
-            done.update(zip(keys, solved, strict=True))
-        seen: dict[tuple[object, ...], Prediction] = {}
-        found: dict[int, Prediction] = {}
-        for place, jobs in all_jobs.items():
-            key = tuple((job.key, job.sight.key) for job in jobs)
-            if key not in seen:
-                simulation = without_bias([done[job.key] for job in jobs])
-                seen[key] = seen_by(recording, simulation, jobs[0].sight)
-            found[place] = seen[key]
-        return found
-
-    def job(self, point: Point, record: int, guard: float = 0.0) -> _Job:
-        """What one run of a point is, its cables damped by a share of the guard."""
-        recording = self.recordings[record]
-        moved = self._moved(point, record)
-        if guard:
-            mine = moved.values.setdefault("cable_viscous", nothing("cable_viscous"))
-            damping = guard * self._guards[record]
-            mine["viscous_n_s_per_m"] = mine["viscous_n_s_per_m"] + damping
-        acting = active(moved.values)
-        inside = tuple(one for one in acting if one.effect.acts.side not in OUTSIDE)
-        outside = tuple(one for one in acting if one.effect.acts.side in OUTSIDE)
-        motion = _cut(recording, point.upto)
-        start_s = recording.shift_s + moved.late_start_s
-        task = Task(
-            rig=recording.rig,
-            excitation=recording.excitation,
-            motion=motion,
-            effects=inside,
-            nominal=recording.rig,
-            strings=moved.strings,
-        )
-        numbers = ((one.name, *sorted(one.values.items())) for one in inside)
-        key = (motion and motion.duration_s, moved.strings, *numbers)
-        return _Job(key, task, Sight(outside, start_s, moved.pose_zero, moved.late_s))
-
-    def _moved(self, point: Point, record: int) -> Moved:
-        values: Values = {}
-        for name, setting in point.effects.items():
-            own = library_values(
-                name, setting, self.peaks_n, record, self.sighting, len(self.recordings)
-            )
-            if own is not None:
-                values[name] = {
-                    key: np.array(one, dtype=float) if isinstance(one, tuple) else one
-                    for key, one in own.items()
-                }
-        return self._moving[record].by(point.nuisance, values)
-
-    def _moved_by(self) -> list[Moving]:
+    def _moved_by(self) -> tuple[Moving, ...]:
         """What nuisances move in each run."""
-        return [
+        return tuple(
             Moving(self._meanings, self._known, record, strung=shown)
             for record, shown in enumerate(self._strung)
-        ]
+        )
 
     def _strings(self, record: int) -> Strung:
         """What a run shows of its strings, whatever is on."""
 
         def see(points: Sequence[Point]) -> list[Prediction]:
-            found = self.do(Share(record, dict(enumerate(points))))
+            found = self._runs.do(Share(record, dict(enumerate(points))))
             return [found[place] for place in range(len(points))]
 
         strings = np.array([one.effect == STRINGS for one in self._meanings])
@@ -358,21 +293,10 @@ class RecordedMachine:
         return highest
 
 
-def _peaks(nominal: Sequence[Simulation], shown_n: Array) -> list[float]:
+def _peaks(nominal: Sequence[Simulation], shown_n: Array) -> tuple[float, ...]:
     """Highest tension of each cable over all runs, as simulated or as recorded, N.
 
     A cell that clips does so below what the rig file has, or below what it was seen to show.
     """
     highest = np.max([run.tension_n.max(axis=0) for run in nominal], axis=0)
-    return [float(one) for one in np.maximum(highest, shown_n)]
-
-
-def _cut(recording: Recording, upto: float) -> RampedSine | None:
-    """The motion with as much of the time after its start as samples are asked for; None: all."""
-    if upto >= 1.0:
-        return None
-    last_s = max(float(one.t_s[0] + upto * (one.t_s[-1] - one.t_s[0])) for one in recording.bundles)
-    whole = RampedSine.from_excitation(recording.excitation)
-    # Whole tenths: recordings that are cut alike share their times.
-    until_s = np.ceil(10.0 * (last_s - recording.shift_s + LATE_S)) / 10.0
-    return replace(whole, duration_s=float(until_s)) if until_s < whole.duration_s else None
+    return tuple(float(one) for one in np.maximum(highest, shown_n))

@@ -83,10 +83,9 @@ class Telling:
         self.rivals = tuple(rivals)
         self._rotation = rotation
         # Without any effect named, the library's whole would be looked at.
-        self._new = RecordedMachine(
-            [experiment.recording(machine.recordings[0])], names or ["mass"], workers
-        )
-        self._new.peaks_n = machine.peaks_n
+        planned = [experiment.recording(machine.recordings[0])]
+        new = RecordedMachine(planned, names or ["mass"], workers)
+        self._new = new.with_peaks(machine.peaks_n)
         self._lens = Lens(list(self._new.bundles))
         places = {one.name: i for i, one in enumerate(machine.nuisances)}
         self._known = [places.get(one.name, -1) for one in self._new.nuisances]
