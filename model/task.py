@@ -184,8 +184,18 @@ class Task:
         stuck = self._stuck_rad_per_s
         turn_rad = method.turn_rad * (ALMOST if thrifty else 1.0)
         of_stuck_s = max(turn_rad / stuck, SHORTEST_STEP_S) if stuck > 0.0 else np.inf
-        switches = [one.effect.longest_step_s or np.inf for one in self.acting]
-        return float(min([of_tones_s, of_decay_s, of_stuck_s, *switches]))
+        return float(min([of_tones_s, of_decay_s, of_stuck_s, *self._longest_steps_s]))
+
+    @cached_property
+    def _longest_steps_s(self) -> list[float]:
+        """What each effect that is on says of steps, s."""
+        found = []
+        for one in self.acting:
+            longest_s = one.effect.longest_step_s
+            if callable(longest_s):
+                longest_s = float(np.min(_asked(longest_s, one.columns())))
+            found.append(np.inf if longest_s is None else longest_s)
+        return found
 
     @cached_property
     def _highest_tone_hz(self) -> float:

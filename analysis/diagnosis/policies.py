@@ -76,7 +76,8 @@ POLICIES: dict[str, Policy] = {
     ),
     # Whoever made its drive may have reckoned with cables that push, as Eq. 16 has them.
     "cable_slack": Policy(shapes={"drive_pushes": (1.0, 0.0)}, form_share=NUMBER),
-    "cable_viscous": Policy(form_share=LINEAR),
+    # A dashpot with a spring in series shows where a motion begins or ends at once.
+    "cable_viscous": Policy(shapes={"series_s": (0.0,)}, form_share=LINEAR),
     "cable_stiffening": Policy(shapes={"quadratic_share": (0.0, 3.0), "hardening": (0.3,)}),
     # A rig's stiffness may have been measured more slowly than the slowest branch relaxes; and
     # whoever has branches farther apart, as many do with one a decade, has a loss that ripples.
@@ -222,10 +223,11 @@ BETWEEN = (
     "let_go_share",
     "ramps_kept_share",
     "highest_hz",
+    "series_s",
 )
 """Shapes that lead from one law to another: a row of branches, to one whose end is out of sight; a
-servo, a grip or a post, to one that is too quick to be seen; a gap, to one at whose end the hook
-hangs."""
+servo, a grip, a spring or a post, to one that is too quick to be seen; a gap, to one at whose end
+the hook hangs."""
 
 LOW_IS = {"static_ratio": "pulley_coulomb"}
 """Shapes at whose low end a law is another: that sticks no harder than it slips."""

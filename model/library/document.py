@@ -67,7 +67,9 @@ def _paragraph(effect: Effect) -> str:
             else ""
         )
         lines.append(f"States of each cable{shared}: {listed}.\n")
-    if effect.longest_step_s is not None:
+    if callable(effect.longest_step_s):
+        lines.append(f"Steps: {effect.cost}.\n")
+    elif effect.longest_step_s is not None:
         longest_ms = 1e3 * effect.longest_step_s
         lines.append(f"Steps of at most {longest_ms:g} ms: {effect.cost}.\n")
     return "\n".join(lines)
@@ -96,7 +98,7 @@ def as_json() -> list[dict[str, object]]:
             "equation": effect.equation,
             "source": effect.source,
             "signature": effect.signature,
-            "longest_step_s": effect.longest_step_s,
+            "longest_step_s": None if callable(effect.longest_step_s) else effect.longest_step_s,
             "cost": effect.cost,
             "parameters": [
                 {

@@ -153,7 +153,8 @@ class Effect:
         Plant: the largest slope of the tension over the elongation beside the cable's own, N/m, as
         of a bristle that sticks: an explicit step must not make its tone grow.
     longest_step_s
-        The integrator must not step over a switch this sharp; None where it is smooth.
+        The integrator must not step over a switch this sharp, or what its parameters say of that;
+        None where it is smooth.
     cost
         What that costs.
     """
@@ -179,7 +180,7 @@ class Effect:
     order: int = 0
     steepest: Law | None = None
     stiffest: Law | None = None
-    longest_step_s: float | None = None
+    longest_step_s: float | Law | None = None
     cost: str = ""
 
     def asks_for(self, name: str) -> bool:

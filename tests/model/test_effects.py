@@ -13,6 +13,7 @@ from model.effects import ActiveEffect, Effect, library
 from model.effects.cable_sag import pull as sag_pull
 from model.library.discovery import kernel_effects
 from model.library.effect import Acts
+from model.method import find_method
 from model.motion import RampedSine
 from model.simulator import run
 from tests.model.harness import STEPS, STIFFNESS, cable_response, platform_response
@@ -188,6 +189,28 @@ def test_kelvin_voigt_is_quadrature_in_proportion_to_frequency() -> None:
     slow, fast = cable_response(effect), cable_response(effect, frequency_hz=6.0)
     assert fast.quadrature[1] == pytest.approx(3 * slow.quadrature[1])
     assert slow.share(3) < 1e-9
+
+
+@pytest.mark.parametrize("series_s", [5e-3, 2e-4])
+def test_a_spring_in_series_with_the_dashpot_answers_for_it(series_s: float) -> None:
+    """Maxwell's c w / (1 + i w tau); of springs that are quicker than a step, to first order."""
+    effect, at = library()["cable_viscous"], 2.0 * np.pi * 2.0
+    rigid, spring = (cable_response(effect, {"series_s": one}, cycles=4) for one in (0.0, series_s))
+    wanted = 1.0 / (1.0 + (at * series_s) ** 2)
+    assert spring.quadrature[1] == pytest.approx(wanted * rigid.quadrature[1], rel=3e-4)
+    stiffer = wanted * at * series_s * rigid.quadrature[1]
+    # Heun's steps of the harness are off by 1e-4 of the whole.
+    off = 2e-4 * rigid.quadrature[1]
+    assert spring.in_phase[1] - rigid.in_phase[1] == pytest.approx(stiffer, rel=0.02, abs=off)
+
+
+def test_steps_can_follow_a_spring_in_series(rig: Rig) -> None:
+    method = find_method("dop853")
+    rigid, quick, slow = (
+        Task(rig, SHORT, effects=(ActiveEffect("cable_viscous", {"series_s": one}),)).step_s(method)
+        for one in (0.0, 1e-4, 1e-3)
+    )
+    assert quick < slow < rigid
 
 
 def test_relaxation_loses_most_at_one_over_tau() -> None:
