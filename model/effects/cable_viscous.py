@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from model.library.effect import Acts, Effect, Parameter, State, elongated
+from model.library.let_go import LET_GO
 
 SHORTEST_S = 8e-4
 """A spring that answers sooner is this one, less of it: the same to first order, and a step can
@@ -57,6 +58,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("viscous_n_s_per_m", "N s/m", 4.0, 0.0, 60.0, "c", magnitude=True),
         Parameter("series_s", "s", 0.0, 0.0, 0.01, "tau, of the spring in series; 0: rigid"),
+        LET_GO,
     ),
     states=(State("dashpot", "m", "q, elongation of the dashpot", rests=elongated),),
     pull=pull,

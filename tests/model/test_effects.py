@@ -204,6 +204,17 @@ def test_a_spring_in_series_with_the_dashpot_answers_for_it(series_s: float) -> 
     assert spring.in_phase[1] - rigid.in_phase[1] == pytest.approx(stiffer, rel=0.02, abs=off)
 
 
+def test_a_platform_that_is_displaced_at_once_deals_a_dashpot_no_blow(rig: Rig) -> None:
+    pushed = SHORT.model_copy(update={"platform_offset_m": (1e-3, 0.0, 0.0)})
+    rigid, spring = (
+        run(Task(rig, pushed, effects=(ActiveEffect("cable_viscous", {"series_s": one}),)))
+        for one in (0.0, 1e-4)
+    )
+    off = np.abs(spring.tension_n - rigid.tension_n).max()
+    # A ten-thousandth of a second of the ring, not the spring's own c / tau of the millimetre.
+    assert off < 0.02 * np.abs(rigid.tension_variation_n).max()
+
+
 def test_steps_can_follow_a_spring_in_series(rig: Rig) -> None:
     method = find_method("dop853")
     rigid, quick, slow = (
