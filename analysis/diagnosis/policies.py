@@ -103,7 +103,8 @@ POLICIES: dict[str, Policy] = {
     # A stiff post gives way at once, and what it stands on loses.
     "frame_compliance": Policy(shapes={"frame_hz": (14.0, 25.0, 120.0), "frame_loss": (0.03, 0.6)}),
     "pulley_coulomb": _friction(presliding_m=(5e-5,)),
-    "pulley_capstan": _friction(presliding_m=(5e-5,), loaded_share=(0.5,)),
+    # Few write the tension as growing along the wrap: to others friction is in proportion to it.
+    "pulley_capstan": _friction(presliding_m=(5e-5,), loaded_share=(0.5,), growth_share=(1.0,)),
     "pulley_presliding": _friction(presliding_m=(6e-4, 2.4e-3)),
     "pulley_stribeck": _friction(
         static_ratio=(1.4,),
@@ -209,6 +210,7 @@ BETWEEN = (
     "quadratic_share",
     "log_share",
     "loaded_share",
+    "growth_share",
     "reaction_share",
     "overtone_share",
     "line_loss_share",

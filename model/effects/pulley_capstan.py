@@ -27,6 +27,7 @@ def _level(loaded_share: Any, before_pulley: Any, pretension: Any) -> Any:
 def pull(
     friction: Any,
     wrap_rad: Any,
+    growth_share: Any,
     presliding_m: Any,
     loaded_share: Any,
     bristle_loss_s: Any,
@@ -38,7 +39,7 @@ def pull(
     before_pulley: Any,
     pretension: Any,
 ) -> Any:
-    """T (exp(mu theta (h(z) + t_b z')/g) - 1), less what it holds at rest."""
+    """T G(mu theta (h(z) + t_b z')/g), less what it holds at rest."""
     level = _level(loaded_share, before_pulley, pretension)
     turned = held(
         bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
@@ -47,13 +48,13 @@ def pull(
         bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
     )
     grip = friction * wrap_rad
-    now = _more(grip * (turned + bristle_loss_s * rate) / level)
-    return before_pulley * now - pretension * _more(grip * bent_at_rest)
+    now = _more(grip * (turned + bristle_loss_s * rate) / level, growth_share)
+    return before_pulley * now - pretension * _more(grip * bent_at_rest, growth_share)
 
 
-def _more(a: Any) -> Any:
-    """exp(a) - 1 by its series: 2e-6 off at 0.3."""
-    return a * (1.0 + a / 2.0 * (1.0 + a / 3.0 * (1.0 + a / 4.0 * (1.0 + a / 5.0))))
+def _more(a: Any, share: Any) -> Any:
+    """G(a) by the series of exp(a), 2e-6 off at 0.3."""
+    return a * (1.0 + share * a / 2.0 * (1.0 + a / 3.0 * (1.0 + a / 4.0 * (1.0 + a / 5.0))))
 
 
 def rates(
@@ -90,7 +91,8 @@ EFFECT = Effect(
     name="pulley_capstan",
     title="capstan friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += T (exp(mu theta (h + t_b z')/g) - 1) - T_0 (exp(mu theta z_0) - 1), "
+    equation="T += T G(mu theta (h + t_b z')/g) - T_0 G(mu theta z_0), "
+    "G(a) = a + s (exp(a) - 1 - a), "
     "z' = v D/y, D = min(d, 1 - e)^a/m, m = min(1 - e, 1), "
     "d = 1 - z sgn v/g, g = l + (1 - l) T/T_0, "
     "h = w z + (1 - w) g sgn v, w = x_s/y, "
@@ -102,6 +104,14 @@ EFFECT = Effect(
         Parameter("friction", "1", 0.03, 0.0, 0.5, "mu", magnitude=True),
         Parameter("wrap_rad", "rad", 1.5708, 0.1, 6.2832, "theta, angle of contact"),
         Parameter("presliding_m", "m", 5e-5, 5e-6, 2e-4, "x_s, the way to a reversal"),
+        Parameter(
+            "growth_share",
+            "1",
+            1.0,
+            0.0,
+            1.0,
+            "s: 1, the tension grows along the wrap (Euler-Eytelwein); 0, friction is mu theta T",
+        ),
         Parameter("loaded_share", "1", 1.0, 0.0, 1.0, "l: 1, load makes a bristle stiffer; 0: not"),
         BRISTLE_LOSS,
         DAHL_EXPONENT,

@@ -162,6 +162,18 @@ def test_capstan_friction_has_the_second_harmonic_and_scales_with_pretension() -
     assert more.quadrature[1] == pytest.approx(2 * loaded.quadrature[1], rel=0.02)
 
 
+@pytest.mark.parametrize("growth", [1.0, 0.5, 0.0])
+def test_capstan_friction_helps_a_cable_that_is_let_out_less_than_it_holds_one_back(
+    growth: float,
+) -> None:
+    """Euler and Eytelwein's exp(a) - 1 has a mean over a cycle, of a^2/2 T; mu theta T has none."""
+    effect, grip = library()["pulley_capstan"], 0.1 * 1.5708
+    numbers = {"presliding_m": 2e-5, "friction": 0.1, "growth_share": growth}
+    answer = cable_response(effect, numbers, pretension=200.0)
+    assert answer.force.mean() == pytest.approx(growth * grip**2 / 2.0 * 200.0, rel=0.05, abs=0.1)
+    assert answer.quadrature[1] == pytest.approx(4.0 / np.pi * grip * 200.0, rel=0.02)
+
+
 def test_stribeck_friction_spikes_at_reversal() -> None:
     effect = library()["pulley_stribeck"]
     answer = cable_response(effect)
