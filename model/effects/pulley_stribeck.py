@@ -1,5 +1,6 @@
 """Dry friction that falls as sliding sets in."""
 
+from dataclasses import replace
 from typing import Any
 
 from model.library.bristle import (
@@ -30,9 +31,8 @@ def rates(
 ) -> Any:
     """Z follows g(v) sgn v, g = 1 + (F_s/F_c - 1) ((1 - q) exp(-u^2) + q/(1 + u^2)), u = v/v_st."""
     level = _level(static_ratio, stribeck_m_per_s, tail_share, axial_velocity)
-    return bent(
-        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
-    )
+    whole = bristle + static_ratio * bent_at_rest
+    return bent(whole, axial_velocity, presliding_m, level, dahl_exponent, elastic_share)
 
 
 def _level(static_ratio: Any, stribeck_m_per_s: Any, tail_share: Any, axial_velocity: Any) -> Any:
@@ -55,7 +55,7 @@ def pull(
     bristle: Any,
     axial_velocity: Any,
 ) -> Any:
-    """F_c (h(z) - z_0 + t_b z'), z up to F_s / F_c."""
+    """F_c (h(z) - z_0 F_s / F_c + t_b z'), z up to F_s / F_c."""
     rate = rates(
         static_ratio,
         stribeck_m_per_s,
@@ -68,17 +68,17 @@ def pull(
         axial_velocity,
     )
     level = _level(static_ratio, stribeck_m_per_s, tail_share, axial_velocity)
-    now = held(
-        bristle + bent_at_rest, axial_velocity, presliding_m, level, dahl_exponent, elastic_share
-    )
-    return coulomb_n * (now - bent_at_rest + bristle_loss_s * rate)
+    left = static_ratio * bent_at_rest
+    now = held(bristle + left, axial_velocity, presliding_m, level, dahl_exponent, elastic_share)
+    return coulomb_n * (now - left + bristle_loss_s * rate)
 
 
 EFFECT = Effect(
     name="pulley_stribeck",
     title="Stribeck friction at the pulley",
     acts=Acts.PULLEY,
-    equation="T += F_c (h - z_0 + t_b z'), z' = v D/y, D = min(d, 1 - e)^a/m, m = min(1 - e, 1), "
+    equation="T += F_c (h - z_0 F_s/F_c + t_b z'), z' = v D/y, "
+    "D = min(d, 1 - e)^a/m, m = min(1 - e, 1), "
     "d = 1 - z sgn v/g, "
     "g = 1 + (F_s/F_c - 1) ((1 - q) exp(-u^2) + q/(1 + u^2)), u = v/v_st, "
     "h = w z + (1 - w) g sgn v, w = x_s/y, "
@@ -96,9 +96,12 @@ EFFECT = Effect(
         BRISTLE_LOSS,
         DAHL_EXPONENT,
         ELASTIC_SHARE,
-        BENT_AT_REST,
+        replace(
+            BENT_AT_REST,
+            meaning="z_0: at rest z is F_s / F_c of it; what it holds there is pretension",
+        ),
     ),
-    states=(State("bristle", "1", "z - z_0, the bent bristle from where it rests"),),
+    states=(State("bristle", "1", "z - z_0 F_s/F_c, the bent bristle from where it rests"),),
     pull=pull,
     steepest=steepest,
     stiffest=stiffest,

@@ -111,13 +111,13 @@ def test_what_a_bristle_held_at_rest_is_missing_once_it_has_turned_over(
     name: str, bent: float
 ) -> None:
     effect = library()[name]
-    numbers = {one.name: one.default for one in effect.parameters}
-    amplitude_m = 20.0 * numbers["presliding_m"]
+    (presliding_m,) = (one.default for one in effect.parameters if one.name == "presliding_m")
+    amplitude_m = 20.0 * presliding_m
     plain = cable_response(effect, {}, amplitude_m)
     left = cable_response(effect, {"bent_at_rest": bent}, amplitude_m)
     slides = 0.5 * (plain.force.max() - plain.force.min())
-    level = 1.0 if name != "pulley_stribeck" else 1.0 / numbers["static_ratio"]
-    assert plain.mean - left.mean == pytest.approx(bent * level * slides, rel=0.15)
+    # Of Stribeck's law it is a share of the static friction, which is the most that is held.
+    assert plain.mean - left.mean == pytest.approx(bent * slides, rel=0.15)
     assert left.force - left.mean == pytest.approx(plain.force - plain.mean, abs=0.02 * slides)
 
 
