@@ -66,6 +66,7 @@ POLICIES: dict[str, Policy] = {
             "yield_m": (5e-4, 2e-3),
             "bouc_wen_share": (0.0, 1.0),
             "bend": (0.5,),
+            "back_share": (0.5,),
             "counted_share": (0.5,),
         }
     ),

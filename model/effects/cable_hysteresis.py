@@ -1,7 +1,7 @@
 """Rate-independent hysteresis of the braided cable, by one of two laws or between them.
 
-Strands yield one after the other; or one loop softens from the first, and is as stiff as at the
-beginning whenever it turns back (Bouc and Wen).
+Strands yield one after the other; or one loop softens from the first, and is about as stiff as at
+the beginning whenever it turns back (Bouc and Wen).
 """
 
 from typing import Any
@@ -53,16 +53,18 @@ def _held(yield_m: Any, fibre: Any, elongation_rate: Any) -> Any:
     return elongation_rate - slips * (speed * fibre + size * elongation_rate)
 
 
-def _softening(yield_m: Any, bend: Any, held: Any, elongation_rate: Any) -> Any:
-    """Give z' = x' - (|x'| sgn z + x') q/2, q = (1 - b) r + b r^2, r = |z|/y: n = 1 to 2."""
+def _softening(yield_m: Any, bend: Any, back: Any, held: Any, elongation_rate: Any) -> Any:
+    """Give z' = x' - ((1 - c) |x'| sgn z + c x') q, q = (1 - b) r + b r^2, r = |z|/y."""
     speed, size = smooth_size(elongation_rate, ROUNDING_M_PER_S), np.abs(held)
     slips = (1.0 + bend * (size / yield_m - 1.0)) / yield_m
-    return elongation_rate - 0.5 * slips * (speed * held + size * elongation_rate)
+    on = speed * held
+    return elongation_rate - slips * (on + back * (size * elongation_rate - on))
 
 
 def rates(
     yield_m: Any,
     bend: Any,
+    back_share: Any,
     z_1: Any,
     z_2: Any,
     z_3: Any,
@@ -80,7 +82,7 @@ def rates(
         _held(YIELDS[3] * yield_m, z_4, elongation_rate),
         _held(YIELDS[4] * yield_m, z_5, elongation_rate),
         _held(YIELDS[5] * yield_m, z_6, elongation_rate),
-        _softening(yield_m, bend, z_w, elongation_rate),
+        _softening(yield_m, bend, back_share, z_w, elongation_rate),
     )
 
 
@@ -90,7 +92,7 @@ EFFECT = Effect(
     acts=Acts.CABLE,
     equation="T += a k [(1 - m) (z_1 + ... + z_6)/6 + m z_w - s x], z' = x' - (|x'| sgn z + "
     "x') p/(1 + p), p = (z/y)^8, x = Delta L, y = x_y/6, 3 x_y/6, ..., 11 x_y/6; "
-    "z_w' = x' - (|x'| sgn z_w + x') [(1 - b) r + b r^2]/2, r = |z_w|/x_y",
+    "z_w' = x' - ((1 - c) |x'| sgn z_w + c x') [(1 - b) r + b r^2], r = |z_w|/x_y",
     source="strands that yield between 0 and 2 x_y: Iwan, J. Appl. Mech. 33 (1966) 893, each by "
     "Wen, J. Eng. Mech. Div. ASCE 102 (1976) 249, n = 8; z_w: the same with n = 1 to 2",
     signature="weak odd harmonics, a loop with sharp tips, rate-independent; tan delta and "
@@ -108,6 +110,14 @@ EFFECT = Effect(
             "s: how much of a is in the stiffness already: 1 before, 0 after fibres slip",
         ),
         Parameter("bend", "1", 0.5, 0.0, 1.0, "b: 0 for n = 1, 1 for n = 2"),
+        Parameter(
+            "back_share",
+            "1",
+            0.5,
+            0.2,
+            0.8,
+            "c, gamma/(beta + gamma): 0.5, as stiff as at first as it turns back; more, softer",
+        ),
     ),
     states=(
         State("z_1", "m", "what the sixth of the strands holds that yields first"),

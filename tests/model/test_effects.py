@@ -303,16 +303,21 @@ def test_strands_that_yield_evenly_lose_what_many_of_them_would(share: float) ->
 
 
 @pytest.mark.parametrize(("bend", "power"), [(0.0, 1.0), (1.0, 2.0)])
-def test_a_loop_that_softens_from_the_first_is_bouc_and_wens(bend: float, power: float) -> None:
+@pytest.mark.parametrize("back", [0.5, 0.7])
+def test_a_loop_that_softens_from_the_first_is_bouc_and_wens(
+    bend: float, power: float, back: float
+) -> None:
     alpha, stiffness, yield_m, amplitude = 0.2, 1410.0, 5e-3, 4e-3
     values = {"loop_share": alpha, "yield_m": yield_m, "bouc_wen_share": 1.0, "bend": bend}
+    values["back_share"] = back
     answer = cable_response(library()["cable_hysteresis"], values, amplitude_m=amplitude)
-    # z' = x' (1 - r^n) where |z| grows and x' where it falls, after enough cycles to repeat.
+    # z' = x' (1 - r^n) where |z| grows and x' (1 - (2 c - 1) r^n) where it falls, until it repeats.
     phase = np.linspace(0.0, 12.0 * np.pi, 120_001)
     x, z = amplitude * np.sin(phase), np.zeros(phase.size)
     for i, step in enumerate(np.diff(x)):
         grows = step * z[i] > 0.0
-        z[i + 1] = z[i] + step * (1.0 - (abs(z[i]) / yield_m) ** power * grows)
+        slips = 1.0 if grows else 2.0 * back - 1.0
+        z[i + 1] = z[i] + step * (1.0 - (abs(z[i]) / yield_m) ** power * slips)
     last = phase >= 10.0 * np.pi
     quadrature = alpha * stiffness * 2.0 * np.mean(z[last] * np.cos(phase[last]))
     in_phase = alpha * stiffness * 2.0 * np.mean(z[last] * np.sin(phase[last]))
