@@ -116,3 +116,24 @@ def test_what_candidates_do_is_not_simulated_again_beside_the_same_simulation(
         assert known.T @ known == pytest.approx(fresh.T @ fresh, rel=1e-2)
         promised = second.problem.residual @ known
         assert promised == pytest.approx(alone.problem.residual @ fresh, rel=0.02)
+
+
+def test_what_was_told_of_some_candidates_is_not_simulated_again_with_the_others() -> None:
+    class Counted(LetGo):
+        asked = 0
+
+        def simulate(
+            self, points: Sequence[Point], reduce: Callable[[Prediction], Any]
+        ) -> list[Any]:
+            self.asked += len(points)
+            return super().simulate(points, reduce)
+
+    system, there = Counted(ring(0.0, 0.0, 0.0, 0.0)), Followed(np.zeros(1), None)
+    alone = faint(system, there, system.candidates)
+    at_once, system.asked = system.asked, 0
+    some = faint(system, there, system.candidates[:1])
+    both = faint(system, there, system.candidates, near=some)
+    assert system.asked == at_once
+    assert both.terms.keys() == alone.terms.keys()
+    for place, columns in alone.terms.items():
+        assert both.terms[place].T @ both.terms[place] == pytest.approx(columns.T @ columns)
