@@ -65,5 +65,5 @@ EFFECT = Effect(
     rates=rates,
     steepest=steepest,
     longest_step_s=longest_step_s,
-    cost="none without a spring in series; with one, steps that it can follow",
+    cost="as long as without it; with a spring in series, 2.5 times as long as that takes",
 )
