@@ -7,7 +7,6 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.evidence import FORM_SIZES, FORM_WEIGHTS
-from analysis.engine.faint import FORMS, UNEXPLAINED, inexact
 from analysis.engine.fitted import Causes, Fitted, by_cause
 from analysis.engine.followed import Followed
 from analysis.engine.hypothesis import Hypothesis
@@ -16,6 +15,7 @@ from analysis.engine.part import has_several
 from analysis.engine.refine import Refiner
 from analysis.engine.ring_fit import follow_ring
 from analysis.engine.ring_samples import Samples
+from analysis.engine.span import FORMS, UNEXPLAINED, inexact
 from analysis.engine.state import State
 from analysis.engine.sure import as_sure
 from analysis.engine.system import System

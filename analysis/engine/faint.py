@@ -17,30 +17,18 @@ from analysis.engine.candidate import Candidate, Setting
 from analysis.engine.differences import differences
 from analysis.engine.evidence import Problem, directions
 from analysis.engine.followed import Followed
-from analysis.engine.labels import Labels
 from analysis.engine.ring_samples import Samples
 from analysis.engine.sensitivity import BATCH, Columns, Progress
+from analysis.engine.span import all_alike, compressed
 from analysis.engine.stride import LOST, SEEN, Stride
 from analysis.engine.system import Point, System, own_nuisances
-from analysis.engine.variance import SPREAD
 from analysis.engine.whiten import noise_leaves
 
 SMALL = 0.03
 """Of the size that a term is screened at, what tells how it changes the samples."""
 
-UNEXPLAINED = 0.2
-"""Of what nothing explains, this share may lie where candidates are looked for."""
-
 FARTHEST = 1e12
 """A change larger than this, in units of noise for one unit of a term, is none."""
-
-FORMS = 20
-"""An error of form lies in few directions, and in which is not known: in each it may be as large as
-if there were so many."""
-
-INEXACT = 0.015
-"""Two simulators of the same laws differ by as much, rms, in units of a sample's noise: by nothing
-in a thousand samples, and in fifty thousand by more than a cause has to explain."""
 
 CLOSE = 0.05
 """Where two simulations differ by no more than this, squared, of a sample's noise, on average, what
@@ -48,9 +36,6 @@ a candidate does beside the one is what it does beside the other."""
 
 KEPT = 6e7
 """What all candidates do to all samples is kept where it is no more numbers than this: 480 MB."""
-
-INDEPENDENT = 1e-9
-"""Directions that hold less than this share of the strongest one's power are rounding."""
 
 
 Place = tuple[str, int, int]
@@ -108,6 +93,11 @@ class Faint:
     seen: _Seen
     here: _Seen
     strides: tuple[tuple[Stride, Array], ...] = ()
+
+    def is_about(self, led: Followed) -> bool:
+        """Whether it is about just these numbers."""
+        there, led = self.followed, led.about or led
+        return there.nuisance is led.nuisance and there.state is led.state
 
     def to_lead_from(self) -> "Faint":
         """Without what is kept of all samples for what is near, which may be much."""
@@ -173,7 +163,7 @@ def faint(
     # A simulation that came to nothing tells nothing.
     changes[~(np.abs(changes).max(axis=1) < FARTHEST)] = 0.0
     allowed = noise_leaves(system.bundles)
-    inside, residual_inside, noise = _compressed(changes, here, allowed)
+    inside, residual_inside, noise = compressed(changes, here, allowed)
     size = len(residual_inside)
     nuisance = inside[:, :count]
     numbers_do = nuisance / [one.sigma for one in system.nuisances]
@@ -191,7 +181,7 @@ def faint(
         nuisance=nuisance @ rotation,
         at=rotation.T @ followed.nuisance,
         base=base,
-        labels=_labels(size),
+        labels=all_alike(size),
         used=used,
     )
     about = _Seen(followed.telling, here, own, {**{one: kept[one] for one in old}, **new})
@@ -252,9 +242,7 @@ def _just_here(near: Faint | None, followed: Followed) -> _Seen | None:
     """What was simulated about just these numbers; None: nothing was."""
     if near is None or len(near.here.numbers) == 0 or near.here.telling != followed.telling:
         return None
-    there = near.followed
-    same = there.nuisance is followed.nuisance and there.state is followed.state
-    return near.here if same else None
+    return near.here if near.is_about(followed) else None
 
 
 def _kept(near: Faint | None, followed: Followed, here: Array) -> dict[Place, Array]:
@@ -299,68 +287,3 @@ def _terms(
                     columns[:, k] = numbers[:, i]
             terms[candidate.name, v] = columns
     return terms
-
-
-def _compressed(
-    changes: Array, residual: Array, allowed: float = 1.0
-) -> tuple[Array, Array, float]:
-    """Changes and residual, in the directions that the changes span.
-
-    Parameters
-    ----------
-    changes, residual
-        Shapes (k, n) and (n,).
-    allowed
-        What noise may leave of a squared sample, on average: its variance may be known from few.
-
-    Returns
-    -------
-    Array, Array, float
-        Shapes (f, k) and (f,), and the variance of noise there: more than one where the residual
-        holds what nothing spans, and where samples are many.
-    """
-    norms = np.linalg.norm(changes, axis=1)
-    norms[norms == 0.0] = 1.0
-    values, vectors = np.linalg.eigh((changes @ changes.T) / np.outer(norms, norms))
-    kept = values > INDEPENDENT * values[-1]
-    roots, vectors = np.sqrt(values[kept]), vectors[:, kept]
-    inside = (roots[:, None] * vectors.T) * norms
-    residual_inside = (vectors.T @ (changes @ residual / norms)) / roots
-    free = max(len(residual) - len(roots), 1)
-    left = float(residual @ residual - residual_inside @ residual_inside) / free
-    spread = UNEXPLAINED * max(left - allowed, 0.0) * len(residual) / len(roots)
-    known = max(min(left, allowed), 1.0) + inexact(len(residual))
-    return inside, residual_inside, known + spread
-
-
-def inexact(count: int) -> float:
-    """What a simulator's own error adds to the variance along each direction that is looked at.
-
-    Parameters
-    ----------
-    count
-        Samples.
-    """
-    return INEXACT**2 * count / FORMS
-
-
-def _labels(size: int) -> Labels:
-    """One group of numbers that are all alike: an error of form may lie in any direction."""
-    zeros, flags = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=bool)
-    return Labels(
-        bundle=zeros,
-        channel=zeros,
-        segment=zeros,
-        line=np.ones(size),
-        ringing=flags,
-        growth=np.ones(size),
-        quadrature=zeros,
-        order=zeros,
-        held_out=flags,
-        group=zeros,
-        stretch=zeros,
-        samples=np.full(size, round(SPREAD * FORMS)),
-        free=~flags,
-        every=~flags,
-        sealed=flags,
-    )

@@ -207,8 +207,7 @@ class Leader:
             Of what is on alone.
         """
         there = about.about or about
-        known = None if self._asked is None else self._asked.followed
-        just = known and known.nuisance is there.nuisance and known.state is there.state
+        just = self._asked is not None and self._asked.is_about(about)
         if not just or (self._asked_itself and not itself):
             on = [self._refiner.candidates[name] for name in about.names]
             asked = [one for one in on if is_placed(one)]

@@ -8,9 +8,9 @@ import numpy as np
 
 from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate
-from analysis.engine.faint import FORMS
 from analysis.engine.fitted import Fitted
 from analysis.engine.hypothesis import LOG_ODDS, Hypothesis
+from analysis.engine.span import FORMS
 
 TEMPER = 2.0
 """Scores count for less than they say, by this factor: laws are never quite the library's."""

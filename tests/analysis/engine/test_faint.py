@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.engine.faint import _compressed, faint
+from analysis.engine.faint import faint
 from analysis.engine.followed import Followed
+from analysis.engine.span import compressed
 from analysis.engine.system import Point, Prediction, System
 from tests.analysis.engine.test_ring_fit import LetGo, ring
 
@@ -19,7 +20,7 @@ def test_the_span_keeps_every_product_and_noise_alone_has_its_own_variance() -> 
     changes[4] = changes[0] - 2.0 * changes[1]
     changes[5] = 0.0
     residual = 3.0 * changes[2] + generator.normal(size=400)
-    inside, seen, noise = _compressed(changes, residual)
+    inside, seen, noise = compressed(changes, residual)
     assert inside.shape == (4, 6), "one change is others together, and one is nothing"
     assert inside.T @ inside == pytest.approx(changes @ changes.T, abs=1e-6)
     assert inside.T @ seen == pytest.approx(changes @ residual, abs=1e-6)
@@ -30,8 +31,8 @@ def test_what_nothing_spans_makes_everything_less_certain() -> None:
     generator = np.random.default_rng(4)
     changes = generator.normal(size=(5, 400))
     noise = generator.normal(size=400)
-    _, _, quiet = _compressed(changes, noise)
-    _, _, loud = _compressed(changes, 2.0 * noise)
+    _, _, quiet = compressed(changes, noise)
+    _, _, loud = compressed(changes, 2.0 * noise)
     assert loud > 10.0 * quiet
 
 
@@ -39,9 +40,9 @@ def test_noise_that_is_known_from_few_samples_is_as_large_as_it_shows_to_be() ->
     generator = np.random.default_rng(5)
     changes = generator.normal(size=(5, 2000))
     residual = 1.1 * generator.normal(size=2000)
-    _, _, unsure = _compressed(changes, residual, allowed=1.3)
+    _, _, unsure = compressed(changes, residual, allowed=1.3)
     assert unsure == pytest.approx(1.21, abs=0.1)
-    _, _, beyond = _compressed(changes, residual, allowed=1.05)
+    _, _, beyond = compressed(changes, residual, allowed=1.05)
     assert beyond > 3.0 * unsure, "what noise does not allow may lie in any direction"
 
 
@@ -51,7 +52,7 @@ def test_however_many_samples_there_are_what_is_a_fiftieth_of_their_noise_tells_
         generator = np.random.default_rng(6)
         changes = np.concatenate([generator.normal(size=(5, count)), np.ones((1, count))])
         missed = 0.02 * changes[-1]
-        _, seen, noise = _compressed(changes, generator.normal(size=count) + missed, 1.1)
+        _, seen, noise = compressed(changes, generator.normal(size=count) + missed, 1.1)
         told[count] = count * 0.02**2 / noise
         assert float(seen @ seen) == pytest.approx(count * 0.02**2, abs=30.0)
     assert told[2_000] == pytest.approx(0.8, rel=0.2), "few samples say what they say"

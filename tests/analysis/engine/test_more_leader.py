@@ -4,8 +4,8 @@ from math import log
 
 import pytest
 
-from analysis.engine.faint import FORMS
 from analysis.engine.more_leader import by_chance
+from analysis.engine.span import FORMS
 
 
 def test_the_more_of_what_is_left_a_cause_explains_the_less_likely_that_is_chance() -> None:

@@ -7,10 +7,10 @@ from analysis.engine import diagnose
 from analysis.engine.array import Array
 from analysis.engine.candidate import Candidate, Term
 from analysis.engine.evidence import Problem, Weighed
-from analysis.engine.faint import _labels
 from analysis.engine.finder import Promised, worth_fitting
 from analysis.engine.hypothesis import Hypothesis, Part
 from analysis.engine.screen import Scored, Screen
+from analysis.engine.span import all_alike
 from tests.analysis.engine.test_by_ring import Tuned
 from tests.analysis.engine.test_ring_fit import SIGMA, ring
 
@@ -32,7 +32,7 @@ def test_the_one_number_that_moved_far_is_offered_alone_though_it_does_much() ->
         nuisance=does,
         at=at,
         base=np.ones(60),
-        labels=_labels(60),
+        labels=all_alike(60),
         used=np.ones(60, dtype=bool),
     )
     screen = Screen(problem, {"stiffness": STIFFNESS}, {("stiffness", 0): does / 0.02})
@@ -106,7 +106,7 @@ def _left(residual: Array) -> Problem:
         nuisance=np.zeros((size, 0)),
         at=np.zeros(0),
         base=np.ones(size),
-        labels=_labels(size),
+        labels=all_alike(size),
         used=np.ones(size, dtype=bool),
     )
 
