@@ -20,12 +20,13 @@ how two rows of a simulation are joined."""
 def segments(
     excitation: Excitation, shift_s: float, first_s: float, last_s: float
 ) -> tuple[Segment, ...]:
-    """Rest, onset, steady motion (used and kept back), stop and what follows."""
-    if excitation.amplitude_deg == 0.0:
+    """Rest, onset, steady motion (used and kept back), stop and what follows.
+
+    Of a platform that is let go and not driven: rest and free decay.
+    """
+    if excitation.amplitude_deg == 0.0 and not any(excitation.platform_offset_m):
         return (Segment(first_s, last_s + 1e-9, None, LINES_HZ, name="whole"),)
     start, end = excitation.start_s + shift_s, excitation.end_s + shift_s
-    first, last = (one + shift_s for one in excitation.steady_window_s)
-    steady = (first, min(last, last_s + 1e-9))
     found: list[Segment] = []
 
     def free(a: float, b: float, name: str) -> None:
@@ -34,6 +35,11 @@ def segments(
             found.append(Segment(a, b, None, LINES_HZ, name=name))
 
     free(first_s, start - CLEAR_S, "rest")
+    if excitation.amplitude_deg == 0.0:
+        free(start + CLEAR_S, last_s + 1.0, "free decay")
+        return tuple(found)
+    first, last = (one + shift_s for one in excitation.steady_window_s)
+    steady = (first, min(last, last_s + 1e-9))
     free(start + CLEAR_S, steady[0], "onset")
     frequency = excitation.frequency_hz
     periods = int((steady[1] - steady[0]) * frequency + 1e-6)

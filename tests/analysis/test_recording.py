@@ -103,6 +103,18 @@ def test_what_is_sampled_just_when_the_motion_starts_is_not_looked_at(run: Run) 
     assert parts["onset"].end_s == parts["steady"].start_s
 
 
+def test_what_is_sampled_just_when_a_platform_is_let_go_is_not_looked_at(run: Run) -> None:
+    motion = run.start.excitation
+    gone = motion.model_copy(update={"amplitude_deg": 0.0, "platform_offset_m": (2e-3, 0.0, 0.0)})
+    rest, decay = segments(gone, 0.0, 0.0, gone.duration_s)
+    assert (rest.name, decay.name) == ("rest", "free decay")
+    assert gone.start_s - rest.end_s == pytest.approx(0.006)
+    assert decay.start_s - gone.start_s == pytest.approx(0.006)
+    assert decay.end_s > gone.duration_s
+    still = gone.model_copy(update={"platform_offset_m": (0.0, 0.0, 0.0)})
+    assert [one.name for one in segments(still, 0.0, 0.0, still.duration_s)] == ["whole"]
+
+
 @pytest.mark.parametrize(
     ("lowest_n", "hangs"),
     [(2.0, False), (0.0, False), (-4.0, True)],
