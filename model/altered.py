@@ -187,20 +187,23 @@ class Loose(_Imperfect):
         Half the play, d.
     servo_s
         Standard deviation of the Gaussian by which a servo smooths what play takes away.
+    servo_late_s
+        By how much it does so later.
     """
 
     play_rad: float
     servo_s: float
+    servo_late_s: float = 0.0
 
     def at(self, time_s: Array, within_s: Array | None = None) -> Command:
         """X*, X*' and X*''; see `Motion.at`."""
         told = tuple(values.copy() for values in self.motion.at(time_s, within_s))
         if self.play_rad == 0.0:
             return told[0], told[1], told[2]
-        grid_s, lags = _followed(self)
+        grid_s, lags = _followed(replace(self, servo_late_s=0.0))
         for values, lag in zip(told, lags, strict=True):
             for axis in range(3):
-                values[..., 3 + axis] -= np.interp(time_s, grid_s, lag[:, axis])
+                values[..., 3 + axis] -= np.interp(time_s - self.servo_late_s, grid_s, lag[:, axis])
         return told[0], told[1], told[2]
 
 

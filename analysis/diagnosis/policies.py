@@ -152,7 +152,7 @@ POLICIES: dict[str, Policy] = {
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     # What disturbs the platform as its motion begins need not wait for a drive that is late.
     "drive_phase": Policy(steps={"late_s": 0.003}, shapes={"disturbed_late_share": (1.0, 0.0)}),
-    "drive_backlash": Policy(shapes={"servo_s": (6e-3,)}, form_share=LAW),
+    "drive_backlash": Policy(shapes={"servo_s": (6e-3,), "servo_late_s": (0.0,)}, form_share=LAW),
     "clock_drift": Policy(steps={"drift_ppm": 200.0}),
     # Whether its ramps last as commanded is told at the end of the motion alone.
     "drive_frequency": Policy(steps={"frequency_share": 2e-4}, shapes={"ramps_kept_share": (0.0,)}),
@@ -218,6 +218,7 @@ BETWEEN = (
     "loss_growth",
     "depth_share",
     "servo_s",
+    "servo_late_s",
     "grip_s",
     "damping_ratio",
     "frame_hz",

@@ -441,6 +441,33 @@ def test_a_gear_with_play_stands_until_the_other_flank_is_reached(rig: Rig) -> N
     assert np.abs(angle[stands]) == pytest.approx(1.8, abs=0.02)
 
 
+def test_a_servo_of_second_order_smooths_late_what_play_takes(rig: Rig) -> None:
+    """The Gaussian, late, and the filter itself, up to the platform's tones."""
+    from scipy.signal import bilinear, lfilter
+
+    course = RampedSine.from_excitation(Excitation(rest_s=0.5, motion_s=3.0, ramp_s=0.5))
+    turns, damping, most = 2.0 * np.pi * 30.0, 0.8, np.deg2rad(0.2)
+    quick = {
+        "backlash_deg": 0.2,
+        "servo_s": np.sqrt(4.0 * damping**2 - 2.0) / turns,
+        "servo_late_s": 2.0 * damping / turns,
+    }
+    loose = Task(rig, motion=course, effects=[ActiveEffect("drive_backlash", quick)]).driven
+    time_s = np.arange(0.0, 3.5, 1e-4)
+    angle = course.at(time_s)[0][:, 4]
+    held = np.zeros_like(angle)
+    for i in range(1, len(angle)):
+        held[i] = np.clip(held[i - 1], angle[i] - most, angle[i] + most)
+    filtered = bilinear([turns**2], [1.0, 2.0 * damping * turns, turns**2], fs=1e4)
+    expected = lfilter(*filtered, held - angle)
+    found = loose.at(time_s)[0][:, 4] - angle
+    assert np.abs(found - expected).max() < 0.05 * most
+    early = Task(
+        rig, motion=course, effects=[ActiveEffect("drive_backlash", {**quick, "servo_late_s": 0.0})]
+    ).driven
+    assert np.abs(early.at(time_s)[0][:, 4] - angle - expected).max() > 0.1 * most
+
+
 def test_backlash_moves_as_its_rates_say(rig: Rig) -> None:
     course = RampedSine.from_excitation(Excitation(rest_s=0.0, motion_s=2.0, ramp_s=0.5))
     loose = Task(rig, motion=course, effects=[ActiveEffect("drive_backlash")]).driven
