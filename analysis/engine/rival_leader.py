@@ -37,7 +37,7 @@ BENT, FAR_BENT = 100.0, 1000.0
 """Parameters of one kind whose squares come to more than this, in sigmas, stand for a cause: beside
 what explains to the noise, and beside what does not."""
 
-NEARLY = 1.5
+NEARLY = 3.0
 """What leaves no more than so many times what the best does, squared, came nearly as far."""
 
 CLOSE = 60.0
