@@ -125,6 +125,23 @@ def retuned(motion: Motion, factor: float) -> Motion:
     return Altered(motion, pace=factor)
 
 
+def turned(motion: Motion, back_rad: float) -> Motion:
+    """A motion whose sine is turned back, while its ramps keep their times.
+
+    Parameters
+    ----------
+    motion
+        As commanded; one that is no sine stays as it is.
+    back_rad
+        By which angle.
+    """
+    if isinstance(motion, RampedSine):
+        return replace(motion, phase_rad=motion.phase_rad - back_rad)
+    if isinstance(motion, Altered | Distorted | Loose):
+        return replace(motion, motion=turned(motion.motion, back_rad))
+    return motion
+
+
 @dataclass(frozen=True)
 class Distorted(_Imperfect):
     """A sine with one harmonic.

@@ -151,7 +151,10 @@ POLICIES: dict[str, Policy] = {
     "cell_lag": Policy(steps={"lag_s": 0.003}, shapes={"second_order": (0.0,)}, form_share=LINEAR),
     "cell_drift": Policy(shapes={"settles_per_s": (0.0,)}, form_share=LINEAR),
     # What disturbs the platform as its motion begins need not wait for a drive that is late.
-    "drive_phase": Policy(steps={"late_s": 0.003}, shapes={"disturbed_late_share": (1.0, 0.0)}),
+    "drive_phase": Policy(
+        steps={"late_s": 0.003},
+        shapes={"disturbed_late_share": (1.0, 0.0), "phase_share": (0.0, 1.0)},
+    ),
     "drive_backlash": Policy(shapes={"servo_s": (6e-3,), "servo_late_s": (0.0,)}, form_share=LAW),
     "clock_drift": Policy(steps={"drift_ppm": 200.0}),
     # Whether its ramps last as commanded is told at the end of the motion alone.
@@ -196,6 +199,7 @@ WHOLE = (
     "reads_up",
     "drive_pushes",
     "disturbed_late_share",
+    "phase_share",
     "held_share",
     "bouc_wen_share",
 )

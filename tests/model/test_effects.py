@@ -428,6 +428,21 @@ def test_a_tone_may_be_off_while_its_ramps_last_as_commanded(rig: Rig) -> None:
         assert tuned.driven.at(time_s)[0] == pytest.approx(plain.driven.at(time_s)[0], abs=1e-9)
 
 
+def test_a_phase_turns_the_sine_and_leaves_its_ramps(rig: Rig) -> None:
+    asked = Excitation(rest_s=0.5, motion_s=4.0, ramp_s=0.5, frequency_hz=1.03)
+    course = RampedSine.from_excitation(asked)
+    values = {"late_s": 0.02, "phase_share": 1.0}
+    for beside in ([], [ActiveEffect("drive_backlash", {"backlash_deg": 0.2})]):
+        acting = [ActiveEffect("drive_phase", values), *beside]
+        driven = Task(rig, motion=course, effects=acting).driven
+        # By 0.02 s at 2.06 Hz: by twice as long at half of that.
+        back = replace(course, phase_rad=-2.0 * np.pi * 2.06 * 0.02)
+        plain = Task(rig, motion=back, effects=beside).driven
+        time_s = np.linspace(0.0, course.duration_s, 3000)
+        assert driven.at(time_s)[0] == pytest.approx(plain.at(time_s)[0], abs=1e-12)
+    assert driven.start_s == course.start_s
+
+
 def test_a_gear_with_play_stands_until_the_other_flank_is_reached(rig: Rig) -> None:
     course = RampedSine.from_excitation(Excitation(rest_s=0.0, motion_s=3.0, ramp_s=0.5))
     quick = {"backlash_deg": 0.2, "servo_s": 2e-3}
