@@ -1,5 +1,6 @@
 """Motions as an imperfect drive makes them of the commanded one."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -118,11 +119,14 @@ def retuned(motion: Motion, factor: float) -> Motion:
     factor
         On the frequency.
     """
-    if isinstance(motion, RampedSine):
-        return replace(motion, frequency_hz=factor * motion.frequency_hz)
-    if isinstance(motion, Altered | Distorted | Loose):
-        return replace(motion, motion=retuned(motion.motion, factor))
-    return Altered(motion, pace=factor)
+    return _innermost(
+        motion,
+        lambda one: (
+            replace(one, frequency_hz=factor * one.frequency_hz)
+            if isinstance(one, RampedSine)
+            else Altered(one, pace=factor)
+        ),
+    )
 
 
 def turned(motion: Motion, back_rad: float) -> Motion:
@@ -135,11 +139,19 @@ def turned(motion: Motion, back_rad: float) -> Motion:
     back_rad
         By which angle.
     """
-    if isinstance(motion, RampedSine):
-        return replace(motion, phase_rad=motion.phase_rad - back_rad)
+    return _innermost(
+        motion,
+        lambda one: (
+            replace(one, phase_rad=one.phase_rad - back_rad) if isinstance(one, RampedSine) else one
+        ),
+    )
+
+
+def _innermost(motion: Motion, alter: Callable[[Motion], Motion]) -> Motion:
+    """A motion, what was commanded altered, and made of that as before."""
     if isinstance(motion, Altered | Distorted | Loose):
-        return replace(motion, motion=turned(motion.motion, back_rad))
-    return motion
+        return replace(motion, motion=_innermost(motion.motion, alter))
+    return alter(motion)
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ BENT, FAR_BENT = 100.0, 1000.0
 what explains to the noise, and beside what does not."""
 
 NEARLY = 3.0
-"""What leaves no more than so many times what the best does, squared, came nearly as far."""
+"""What leaves no more than so many times what the best does, squared, may be in a hollow."""
 
 CLOSE = 60.0
 """What came as close as this, in squared misfit, may have been in places that are as wrong."""
@@ -90,8 +90,8 @@ class RivalLeader(Leader):
     def _lead_kin_anew(self, found: Followed) -> None:
         """Another law by growing windows, where neither that nor the best explains to the noise.
 
-        A law that is not what is there bends parameters, and from there another that comes nearly
-        as far may have come to a hollow. What came to be a law that was led is that, not another.
+        A law that is not what is there bends parameters, and from there another may have come to a
+        hollow. What came to be a law that was led is that, not another.
         """
         if self._near or has_several(self._system) or len(found.names) != 1 or not found.to_end:
             return

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
 
 PAPER_HZ = 2.06
+"""An angle is told as the time that it is at this frequency."""
 
 
 def command(
