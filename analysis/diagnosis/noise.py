@@ -55,7 +55,7 @@ def at_rest(t_s: Array, excitation: Excitation, shift_s: float) -> NDArray[np.bo
     excitation, shift_s
         What was commanded, and how much later than it says.
     """
-    if excitation.amplitude_deg == 0.0 and not any(excitation.platform_offset_m):
+    if excitation.rests:
         return np.ones(len(t_s), dtype=bool)
     return np.asarray(t_s < excitation.start_s + shift_s - SETTLES_S)
 

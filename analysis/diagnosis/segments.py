@@ -24,7 +24,7 @@ def segments(
 
     Of a platform that is let go and not driven: rest and free decay.
     """
-    if excitation.amplitude_deg == 0.0 and not any(excitation.platform_offset_m):
+    if excitation.rests:
         return (Segment(first_s, last_s + 1e-9, None, LINES_HZ, name="whole"),)
     start, end = excitation.start_s + shift_s, excitation.end_s + shift_s
     found: list[Segment] = []

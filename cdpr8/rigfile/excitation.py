@@ -82,6 +82,11 @@ class Excitation(Section):
         return self
 
     @property
+    def rests(self) -> bool:
+        """Whether the platform is neither driven nor let go."""
+        return self.amplitude_deg == 0.0 and not any(self.platform_offset_m)
+
+    @property
     def start_s(self) -> float:
         """When the motion starts."""
         return self.rest_s if self.motion_start_s is None else self.motion_start_s
